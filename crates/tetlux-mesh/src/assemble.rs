@@ -1,0 +1,244 @@
+//! From raw points and cells to a mesh.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use crate::adjacency::{Pair, face_pairs, neighbors};
+use crate::{Field, Location, MeshError, NONE, TetMesh};
+
+/// What assembling a mesh found and mended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Assembly {
+    /// Points as given.
+    pub points_given: usize,
+    /// Points that coincide with an earlier one and were merged into it.
+    pub points_merged: usize,
+    /// Merged points whose data differed from those they were merged into (the first one's are kept).
+    pub merged_data_differ: usize,
+    /// Cells as given.
+    pub cells_given: usize,
+    /// Cells dropped because two of their vertices are one point.
+    pub cells_repeated: usize,
+    /// Cells whose vertex order was reversed to make their volume positive.
+    pub cells_inverted: usize,
+    /// Cells of exactly zero volume: kept in the adjacency, without optical depth.
+    pub cells_flat: usize,
+    /// Faces that three or more cells share; treated as boundary.
+    pub faces_non_manifold: usize,
+    /// Faces whose two cells lie on the same side of them; treated as boundary.
+    pub faces_folded: usize,
+}
+
+impl TetMesh {
+    /// Assembles a mesh of points in world space, cells by point index in any orientation, and fields.
+    ///
+    /// Points that coincide (after rounding to single precision about the bounding box's centre) are merged, the
+    /// first one's data kept; cells with repeated vertices are dropped; the others oriented by the exact sign of
+    /// their volume; faces matched. [`assembly`](Self::assembly) counts it all.
+    pub fn assemble(points: &[DVec3], cells: &[[u32; 4]], fields: Vec<Field>) -> Result<TetMesh, MeshError> {
+        for (what, count) in [("points", points.len()), ("cells", cells.len())] {
+            // u32::MAX is NONE, and half-faces are counted four a cell.
+            let limit = u32::MAX as usize / 4;
+            if count > limit {
+                return Err(MeshError::TooLarge { what, count, limit });
+            }
+        }
+        for field in &fields {
+            let tuples = if field.location == Location::Point { points.len() } else { cells.len() };
+            let expected = tuples.saturating_mul(field.components.max(1));
+            if field.values.len() != expected || field.components == 0 {
+                return Err(MeshError::FieldLength {
+                    name: field.name.clone(),
+                    found: field.values.len(),
+                    expected,
+                    tuples,
+                    location: field.location.plural(),
+                    components: field.components,
+                });
+            }
+        }
+        for (c, cell) in cells.iter().enumerate() {
+            if let Some(&index) = cell.iter().find(|&&v| v as usize >= points.len()) {
+                return Err(MeshError::Index { cell: c, index, points: points.len() });
+            }
+        }
+
+        let mut assembly = Assembly { points_given: points.len(), cells_given: cells.len(), ..Assembly::default() };
+        let (origin, local) = recentre(points)?;
+        let (kept, target) = merge_coincident(&local);
+        assembly.points_merged = points.len() - kept.len();
+        let fields = merge_fields(fields, &kept, &target, &mut assembly);
+        let points: Vec<Vec3> = kept.iter().map(|&i| local[i as usize]).collect();
+        drop(local);
+
+        let mut kept_cells = Vec::new();
+        let mut tets: Vec<[u32; 4]> = Vec::with_capacity(cells.len());
+        for (c, cell) in cells.iter().enumerate() {
+            let cell = cell.map(|v| target[v as usize]);
+            let repeated = (0..4).any(|i| (0..i).any(|j| cell[i] == cell[j]));
+            if !repeated {
+                tets.push(cell);
+                kept_cells.push(c);
+            }
+        }
+        assembly.cells_repeated = cells.len() - tets.len();
+        if tets.is_empty() {
+            return Err(MeshError::Empty { dropped: assembly.cells_repeated });
+        }
+        let fields = if assembly.cells_repeated == 0 { fields } else { keep_cells(fields, &kept_cells) };
+
+        let signs: Vec<i8> = tets.par_iter().map(|cell| volume_sign(&points, cell)).collect();
+        for (cell, &sign) in tets.iter_mut().zip(&signs) {
+            if sign < 0 {
+                cell.swap(2, 3);
+                assembly.cells_inverted += 1;
+            }
+        }
+        assembly.cells_flat = signs.iter().filter(|&&s| s == 0).count();
+
+        let (mut pairs, non_manifold) = face_pairs(points.len(), &tets);
+        assembly.faces_non_manifold = non_manifold;
+        if assembly.cells_flat > 0 {
+            orient_flat(&mut tets, &signs, &mut pairs);
+        }
+        assembly.faces_folded = pairs.iter().filter(|p| p.same_way).count();
+        let neighbors = neighbors(tets.len(), &pairs, |p| !p.same_way);
+        Ok(TetMesh { origin, points, cells: tets, neighbors, fields, assembly })
+    }
+}
+
+/// Positions relative to the bounding box's centre.
+fn recentre(points: &[DVec3]) -> Result<(DVec3, Vec<Vec3>), MeshError> {
+    let bad = |point: usize, at: DVec3| MeshError::Point { point, at: at.to_array() };
+    let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    for (i, &p) in points.iter().enumerate() {
+        if !p.is_finite() {
+            return Err(bad(i, p));
+        }
+        bounds = [bounds[0].min(p), bounds[1].max(p)];
+    }
+    let origin = bounds[0] * 0.5 + bounds[1] * 0.5;
+    let mut local = Vec::with_capacity(points.len());
+    for (i, &p) in points.iter().enumerate() {
+        // Adding zero turns -0 into +0, so that equal points are equal bit for bit.
+        let q = (p - origin).as_vec3() + Vec3::ZERO;
+        if !q.is_finite() || q.abs().max_element() > 1e38 {
+            return Err(bad(i, p));
+        }
+        local.push(q);
+    }
+    Ok((if points.is_empty() { DVec3::ZERO } else { origin }, local))
+}
+
+/// Points to keep, in their order, and for every point the place of the one it became.
+fn merge_coincident(points: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
+    let bits = |i: u32| points[i as usize].to_array().map(f32::to_bits);
+    let mut sorted: Vec<u32> = (0..points.len() as u32).collect();
+    sorted.par_sort_unstable_by_key(|&i| (bits(i), i));
+    let mut first = vec![0u32; points.len()];
+    for group in sorted.chunk_by(|&a, &b| bits(a) == bits(b)) {
+        for &i in group {
+            first[i as usize] = group[0];
+        }
+    }
+    let kept: Vec<u32> = (0..points.len() as u32).filter(|&i| first[i as usize] == i).collect();
+    let mut place = vec![NONE; points.len()];
+    for (k, &i) in kept.iter().enumerate() {
+        place[i as usize] = k as u32;
+    }
+    let target = first.iter().map(|&i| place[i as usize]).collect();
+    (kept, target)
+}
+
+/// Point fields on the points that are kept; counts the merged points whose data differ.
+fn merge_fields(mut fields: Vec<Field>, kept: &[u32], target: &[u32], assembly: &mut Assembly) -> Vec<Field> {
+    if assembly.points_merged == 0 {
+        return fields;
+    }
+    let mut differs = vec![false; target.len()];
+    for field in fields.iter_mut().filter(|f| f.location == Location::Point) {
+        let n = field.components;
+        let tuple = |i: usize| &field.values[i * n..(i + 1) * n];
+        for (i, &t) in target.iter().enumerate() {
+            let first = tuple(kept[t as usize] as usize);
+            differs[i] |= tuple(i).iter().zip(first).any(|(a, b)| a != b && !(a.is_nan() && b.is_nan()));
+        }
+        field.values = kept.iter().flat_map(|&i| tuple(i as usize).iter().copied()).collect();
+    }
+    assembly.merged_data_differ = differs.iter().filter(|&&d| d).count();
+    fields
+}
+
+/// Cell fields on the cells that are kept.
+fn keep_cells(mut fields: Vec<Field>, kept: &[usize]) -> Vec<Field> {
+    for field in fields.iter_mut().filter(|f| f.location == Location::Cell) {
+        let n = field.components;
+        field.values = kept.iter().flat_map(|&c| field.values[c * n..(c + 1) * n].iter().copied()).collect();
+    }
+    fields
+}
+
+/// Exact sign of the volume of a cell.
+fn volume_sign(points: &[Vec3], cell: &[u32; 4]) -> i8 {
+    let [a, b, c, d] = cell.map(|v| {
+        let p = points[v as usize].as_dvec3();
+        robust::Coord3D { x: p.x, y: p.y, z: p.z }
+    });
+    // orient3d is positive where d is below the plane of a, b, c: the opposite of our sign.
+    let sign = -robust::orient3d(a, b, c, d);
+    i8::from(sign > 0.0) - i8::from(sign < 0.0)
+}
+
+/// Gives flat cells, which have no orientation of their own, the one that fits their neighbours'.
+fn orient_flat(cells: &mut [[u32; 4]], signs: &[i8], pairs: &mut [Pair]) {
+    let mut around: Vec<Vec<usize>> = vec![Vec::new(); cells.len()];
+    for (p, pair) in pairs.iter().enumerate() {
+        if pair.cells.iter().any(|&c| signs[c as usize] == 0) {
+            for &c in &pair.cells {
+                around[c as usize].push(p);
+            }
+        }
+    }
+    let mut oriented: Vec<bool> = signs.iter().map(|&s| s != 0).collect();
+    let flat_or_beside = |c: usize| !around[c].is_empty();
+    let mut queue: Vec<usize> = (0..cells.len()).filter(|&c| oriented[c] && flat_or_beside(c)).collect();
+    let mut seed = 0;
+    loop {
+        while let Some(c) = queue.pop() {
+            for &p in &around[c] {
+                let other = pairs[p].cells[usize::from(pairs[p].cells[0] as usize == c)] as usize;
+                if oriented[other] {
+                    continue;
+                }
+                oriented[other] = true;
+                if pairs[p].same_way {
+                    flip(other, cells, &around, pairs);
+                }
+                queue.push(other);
+            }
+        }
+        // A component of flat cells alone: any one of them sets the orientation of the rest.
+        match (seed..cells.len()).find(|&c| !oriented[c]) {
+            Some(c) => {
+                oriented[c] = true;
+                seed = c + 1;
+                queue.push(c);
+            }
+            None => return,
+        }
+    }
+}
+
+/// Reverses a flat cell and all that is known of its faces.
+fn flip(cell: usize, cells: &mut [[u32; 4]], around: &[Vec<usize>], pairs: &mut [Pair]) {
+    cells[cell].swap(2, 3);
+    for &p in &around[cell] {
+        let pair = &mut pairs[p];
+        pair.same_way = !pair.same_way;
+        for side in 0..2 {
+            if pair.cells[side] as usize == cell {
+                pair.faces[side] = [0, 1, 3, 2][pair.faces[side] as usize];
+            }
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Data on points and cells.
+
+/// Where a field's values live.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Location {
+    /// One tuple a point: linear inside each tetrahedron.
+    Point,
+    /// One tuple a cell: constant inside it.
+    Cell,
+}
+
+impl Location {
+    /// "points" or "cells".
+    pub fn plural(self) -> &'static str {
+        match self {
+            Location::Point => "points",
+            Location::Cell => "cells",
+        }
+    }
+}
+
+/// A named array of tuples on the points or on the cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    /// Name, as in the file.
+    pub name: String,
+    /// Points or cells.
+    pub location: Location,
+    /// Values in each tuple, at least 1.
+    pub components: usize,
+    /// Tuples one after another. May hold NaN where data are missing.
+    pub values: Vec<f64>,
+}
+
+impl Field {
+    /// A field on the points.
+    pub fn point(name: impl Into<String>, components: usize, values: Vec<f64>) -> Self {
+        Field { name: name.into(), location: Location::Point, components, values }
+    }
+
+    /// A field on the cells.
+    pub fn cell(name: impl Into<String>, components: usize, values: Vec<f64>) -> Self {
+        Field { name: name.into(), location: Location::Cell, components, values }
+    }
+
+    /// Smallest and largest finite value of a component; `None` if there is none.
+    pub fn range(&self, component: Component) -> Option<[f64; 2]> {
+        finite_range(self.scalars(component))
+    }
+
+    /// The scalar of each tuple.
+    pub(crate) fn scalars(&self, component: Component) -> impl Iterator<Item = f64> + '_ {
+        self.values.chunks_exact(self.components.max(1)).map(move |tuple| match (component, tuple) {
+            (_, [value]) => *value,
+            (Component::Magnitude, tuple) => magnitude(tuple),
+            (Component::Index(i), tuple) => tuple[i],
+        })
+    }
+}
+
+/// Euclidean norm, scaled so that squares neither overflow nor vanish.
+fn magnitude(tuple: &[f64]) -> f64 {
+    let largest = tuple.iter().fold(0.0f64, |m, x| if x.is_nan() { f64::NAN } else { m.max(x.abs()) });
+    if largest == 0.0 || !largest.is_finite() {
+        return largest;
+    }
+    largest * tuple.iter().map(|x| (x / largest) * (x / largest)).sum::<f64>().sqrt()
+}
+
+/// Which scalar to take of a tuple. A field of one component is itself, whatever is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Component {
+    /// Euclidean norm.
+    #[default]
+    Magnitude,
+    /// One component, numbered from 0.
+    Index(usize),
+}
+
+/// One scalar a point or a cell, ready to be classified.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScalarField {
+    /// Name of the field it was taken from.
+    pub name: String,
+    /// Points or cells.
+    pub location: Location,
+    /// One value each; not finite where data are missing.
+    pub values: Vec<f64>,
+    /// Smallest and largest finite value.
+    pub range: [f64; 2],
+    /// Values that are NaN or infinite.
+    pub missing: usize,
+}
+
+pub(crate) fn finite_range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let mut range: Option<[f64; 2]> = None;
+    for v in values.filter(|v| v.is_finite()) {
+        let [lo, hi] = range.unwrap_or([v, v]);
+        range = Some([lo.min(v), hi.max(v)]);
+    }
+    range
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn magnitude_neither_overflows_nor_vanishes() {
+        assert_eq!(magnitude(&[3.0, 4.0]), 5.0);
+        assert_eq!(magnitude(&[3e200, 4e200]), 5e200);
+        // Scaling by the largest component keeps the result within two roundings of exact.
+        assert!((magnitude(&[3e-200, 4e-200]) / 5e-200 - 1.0).abs() < 4.0 * f64::EPSILON);
+        assert!(magnitude(&[f64::NAN, 1.0]).is_nan());
+        assert!(magnitude(&[1.0, f64::NAN]).is_nan());
+    }
+
+    #[test]
+    fn ranges_pass_over_missing_values() {
+        let field = Field::point("p", 2, vec![1.0, f64::NAN, 3.0, 4.0, f64::INFINITY, 0.0]);
+        assert_eq!(field.range(Component::Index(0)), Some([1.0, 3.0]));
+        assert_eq!(field.range(Component::Magnitude), Some([5.0, 5.0]));
+        assert_eq!(Field::cell("c", 1, vec![f64::NAN]).range(Component::Magnitude), None);
+    }
+}

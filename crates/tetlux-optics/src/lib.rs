@@ -1,0 +1,41 @@
+//! Transfer functions and ray-segment integrals of the emission-absorption model.
+//!
+//! A ray crosses a tetrahedron in a segment along which the scalar is linear. A transfer function turns the scalar
+//! into luminance L (linear RGB) and opacity; extinction, per world length, is opacity / unit distance. Light that
+//! enters the back end (`b`) leaves the front end (`f`, the eye's side) as
+//!
+//! ```text
+//! I = I_0 (1 - alpha) + L_b w_b + L_f w_f,    w_b + w_f = alpha
+//! ```
+//!
+//! | module | gives |
+//! |---|---|
+//! | [`transfer`] | what a 1D transfer function is |
+//! | [`preset`] | transfer functions from ParaView's preset files |
+//! | [`segment`] | the weights and whole segments in f64, relative error below 1e-12 |
+//! | [`segment_f32`] | the shader's arithmetic in f32, line by line |
+//! | [`color_space`] | the colour spaces in which presets are interpolated |
+//!
+//! ```
+//! use tetlux_optics::segment::segment;
+//! use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
+//!
+//! let ember = TransferFunction::new(
+//!     vec![ColorNode { s: 0.0, rgb: [1.0, 0.2, 0.0] }],
+//!     vec![OpacityNode { s: 0.0, opacity: 0.0 }, OpacityNode { s: 1.0, opacity: 2.0 }],
+//! )?;
+//! // Through the whole range over three world units: the mean opacity is 1, so the optical depth is 3.
+//! let through = segment(&ember, 1.0, 0.0, 1.0, 3.0);
+//! assert!((through.transmittance - (-3.0_f64).exp()).abs() < 1e-15);
+//! assert!((through.color[0] - through.alpha).abs() < 1e-15);
+//! # Ok::<(), tetlux_optics::transfer::TransferFunctionError>(())
+//! ```
+
+pub mod color_space;
+pub mod preset;
+pub mod segment;
+pub mod segment_f32;
+pub mod transfer;
+
+pub use preset::{Preset, PresetError, read_preset};
+pub use transfer::{ColorNode, OpacityNode, Piece, TransferFunction, TransferFunctionError};

@@ -1,0 +1,211 @@
+//! A scene, rays through it, and the light they gather.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+use tetlux_mesh::{Location, ScalarField, TetMesh};
+use tetlux_optics::TransferFunction;
+
+use crate::ReferenceError;
+use crate::hierarchy::Hierarchy;
+use crate::line::Line;
+use crate::quadrature::{Gathered, Integrator, Workspace};
+use crate::walk::{Segment, Space, segments};
+
+/// The tolerance to take where nothing else is asked.
+pub const DEFAULT_TOLERANCE: f64 = 1e-10;
+
+/// What is seen: a mesh, its scalar, and how the scalar glows and absorbs.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// The mesh.
+    pub mesh: &'a TetMesh,
+    /// A scalar of this mesh. Cells with a value that is not finite have no optical depth.
+    pub scalar: &'a ScalarField,
+    /// Luminance and opacity of the scalar.
+    pub transfer: &'a TransferFunction,
+    /// World length over which an opacity of 1 is an optical depth of 1; above 0.
+    pub unit_distance: f64,
+    /// Largest error of a ray's colour and alpha, above 0: see [`DEFAULT_TOLERANCE`]. Rounding adds some 1e-14, and
+    /// more where the functions are so steep that the rounding of positions shows.
+    pub tolerance: f64,
+}
+
+/// A ray in world space: the points `origin + t direction` with t in [`start`, `end`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where t is 0.
+    pub origin: DVec3,
+    /// Need not be of unit length.
+    pub direction: DVec3,
+    /// Parameter at the eye.
+    pub start: f64,
+    /// Parameter at the far end; may be infinite.
+    pub end: f64,
+}
+
+/// The light that reaches the start of a ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Radiance {
+    /// Linear RGB, premultiplied by alpha, over black.
+    pub color: [f64; 3],
+    /// 1 - transmittance, accurate also where it is tiny.
+    pub alpha: f64,
+    /// Segments of cells along the ray.
+    pub segments: usize,
+    /// Points at which the transfer function was asked.
+    pub evaluations: usize,
+}
+
+/// Casts rays through a scene.
+///
+/// The exact lines of the rays are followed through the face adjacency; rays through edges, vertices or along faces
+/// are treated as if moved by an infinitesimal amount, hence see each stretch of the mesh exactly once. A ray that
+/// grazes the surface sees it whole or not at all. Where cells overlap, extinctions and emissions add.
+pub struct Caster<'a> {
+    space: Space<'a>,
+    hierarchy: Hierarchy,
+    integrator: Integrator<'a>,
+    unit_distance: f64,
+}
+
+/// A ray's line in the mesh's space and the way back.
+struct LocalRay {
+    line: Line,
+    /// Parameters on the line between which the ray runs.
+    limits: [f64; 2],
+    /// World length of the line's direction.
+    length: f64,
+}
+
+impl<'a> Caster<'a> {
+    /// Prepares a scene.
+    ///
+    /// # Errors
+    ///
+    /// If the scalar's length does not fit the mesh, or unit distance or tolerance is not finite and above 0.
+    pub fn new(scene: Scene<'a>) -> Result<Self, ReferenceError> {
+        let Scene { mesh, scalar, transfer, unit_distance, tolerance } = scene;
+        let expected = match scalar.location {
+            Location::Point => mesh.points().len(),
+            Location::Cell => mesh.cells().len(),
+        };
+        if scalar.values.len() != expected {
+            return Err(ReferenceError::ScalarLength {
+                name: scalar.name.clone(),
+                found: scalar.values.len(),
+                expected,
+                location: scalar.location.plural(),
+            });
+        }
+        if !(unit_distance.is_finite() && unit_distance > 0.0) {
+            return Err(ReferenceError::UnitDistance(unit_distance));
+        }
+        if !(tolerance.is_finite() && tolerance > 0.0) {
+            return Err(ReferenceError::Tolerance(tolerance));
+        }
+        let half_width = mesh.points().iter().fold(0.0, |m: f64, p| m.max(p.as_dvec3().abs().max_element()));
+        let scale = 0.5 / power_of_two_below(half_width);
+        let mut space = Space { mesh, scalar, scale, empty: Vec::new() };
+        space.empty = (0..mesh.cells().len()).into_par_iter().map(|cell| is_empty(&space, cell)).collect();
+        let hierarchy = Hierarchy::new(&space);
+        Ok(Self { hierarchy, space, integrator: Integrator::new(transfer, tolerance), unit_distance })
+    }
+
+    /// The light along one ray: none if its origin or direction is not finite, the direction is 0 or its length,
+    /// against the mesh's, beyond 1e300 or below 1e-300.
+    pub fn cast(&self, ray: &Ray) -> Radiance {
+        self.cast_with(ray, &mut Vec::new(), &mut Workspace::default())
+    }
+
+    fn cast_with(&self, ray: &Ray, found: &mut Vec<Segment>, work: &mut Workspace) -> Radiance {
+        let Some(LocalRay { line, limits, length }) = self.local(ray) else { return Radiance::default() };
+        found.clear();
+        segments(&self.space, &self.hierarchy, &line, limits, found);
+        if found.is_empty() {
+            return Radiance::default();
+        }
+        let Gathered { color, optical_depth, evaluations } =
+            self.integrator.integrate(found, length / self.unit_distance, work);
+        Radiance { color, alpha: -(-optical_depth).exp_m1(), segments: found.len(), evaluations }
+    }
+
+    /// The ray on a line that starts outside the mesh, about one mesh width ahead of it.
+    fn local(&self, ray: &Ray) -> Option<LocalRay> {
+        let scale = self.space.scale;
+        // Powers of two, here and in the mesh's scale, keep grid-aligned rays exactly on the grid.
+        let unit = power_of_two_below(ray.direction.abs().max_element());
+        let per_parameter = unit * scale;
+        if !(ray.direction.is_finite() && per_parameter.is_normal() && per_parameter.recip().is_normal()) {
+            return None;
+        }
+        let direction = flush(ray.direction / unit);
+        let origin = (ray.origin - self.space.mesh.origin()) * scale;
+        // From the foot of the mesh's centre two units back, where no point of the mesh is: it lies within sqrt(3).
+        let shift = -origin.dot(direction) / direction.length_squared() - 2.0 / direction.length();
+        let start = flush(direction.mul_add(DVec3::splat(shift), origin));
+        // NaN is no hit either.
+        if !(start.length_squared() <= 8.0) {
+            return None;
+        }
+        let line = Line::new(start, direction);
+        Some(LocalRay {
+            line,
+            limits: [ray.start, ray.end].map(|t| t * per_parameter - shift),
+            length: line.direction().length() / scale,
+        })
+    }
+
+    /// Casts the ray of every pixel, in parallel. `ray` takes column and row, row 0 at the top; `progress` is told
+    /// the number of rows done, from any thread. Returns RGBA, premultiplied, row by row from the top.
+    pub fn render(
+        &self,
+        width: u32,
+        height: u32,
+        ray: impl Fn(u32, u32) -> Ray + Sync,
+        progress: impl Fn(u32) + Sync,
+    ) -> Vec<[f64; 4]> {
+        let mut image = vec![[0.0; 4]; width as usize * height as usize];
+        let done = AtomicU32::new(0);
+        image.par_chunks_mut((width as usize).max(1)).enumerate().for_each_init(
+            || (Vec::new(), Workspace::default()),
+            |(found, work), (y, row)| {
+                for (x, pixel) in row.iter_mut().enumerate() {
+                    let seen = self.cast_with(&ray(x as u32, y as u32), found, work);
+                    let [r, g, b] = seen.color;
+                    *pixel = [r, g, b, seen.alpha];
+                }
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+            },
+        );
+        image
+    }
+}
+
+/// The largest power of two not above a positive number; 1 for 0, and for a subnormal number 0.
+fn power_of_two_below(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { f64::from_bits(x.to_bits() & f64::INFINITY.to_bits()) }
+}
+
+/// Takes components that are nothing against 1 to 0, so that exact products of them do not underflow.
+fn flush(v: DVec3) -> DVec3 {
+    DVec3::select(v.abs().cmplt(DVec3::splat(1e-30)), DVec3::ZERO, v)
+}
+
+/// Whether a cell is flat or misses a value.
+fn is_empty(space: &Space, cell: usize) -> bool {
+    let vertices = space.mesh.cells()[cell];
+    let missing = match space.scalar.location {
+        Location::Point => vertices.iter().any(|&v| !space.scalar.values[v as usize].is_finite()),
+        Location::Cell => !space.scalar.values[cell].is_finite(),
+    };
+    let [a, b, c, d] = vertices.map(|v| {
+        let p = space.position(v);
+        robust::Coord3D { x: p.x, y: p.y, z: p.z }
+    });
+    missing || robust::orient3d(a, b, c, d) == 0.0
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,24 @@
+//! Why a scene cannot be cast.
+
+/// What is wrong with a [`Scene`](crate::Scene).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ReferenceError {
+    /// The scalar does not belong to the mesh.
+    #[error("scalar \"{name}\" has {found} values for {expected} {location}: take it from this mesh")]
+    ScalarLength {
+        /// Name of the scalar.
+        name: String,
+        /// Values it has.
+        found: usize,
+        /// Points or cells of the mesh.
+        expected: usize,
+        /// "points" or "cells".
+        location: &'static str,
+    },
+    /// The unit distance is not a length.
+    #[error("the unit distance is {0}: it must be finite and above 0, in world units")]
+    UnitDistance(f64),
+    /// The tolerance is not a bound.
+    #[error("the tolerance is {0}: it must be finite and above 0, such as 1e-10")]
+    Tolerance(f64),
+}

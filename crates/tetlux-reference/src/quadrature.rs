@@ -1,0 +1,279 @@
+//! Adaptive quadrature of the emission-absorption integral along the segments of a ray.
+
+use tetlux_optics::TransferFunction;
+
+use crate::rule::Rule;
+use crate::walk::Segment;
+
+/// A panel with more optical depth is halved without asking the rules: what lies behind its front would be hidden
+/// from all their nodes.
+const MOST_DEPTH: f64 = 2.0;
+/// A panel is halved at most so often: 2^-60 of a segment, where only rounding is left.
+const MOST_HALVINGS: u32 = 60;
+/// Two results that differ by this share of their size agree: rounding allows no more.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// What is hidden behind the ray's opacity is left out once it is below this share of the tolerance.
+const HIDDEN: f64 = 1e-3;
+
+/// What has been gathered along a ray, front to back.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Gathered {
+    pub(crate) color: [f64; 3],
+    pub(crate) optical_depth: f64,
+    /// Points at which the transfer function was asked.
+    pub(crate) evaluations: usize,
+}
+
+/// A segment between two neighbouring control points.
+struct Layer {
+    segment: Segment,
+    /// The control points around it; infinite at the ends of the axis.
+    between: [f64; 2],
+}
+
+/// The integral over a panel as one rule sees it, light weighted by the transmittance from the panel's front.
+#[derive(Clone, Copy)]
+struct Estimate {
+    color: [f64; 3],
+    depth: f64,
+}
+
+/// Buffers that a thread uses again and again.
+#[derive(Default)]
+pub(crate) struct Workspace {
+    ends: Vec<f64>,
+    active: Vec<Segment>,
+    cuts: Vec<f64>,
+    layers: Vec<Layer>,
+}
+
+/// The integrator of one transfer function.
+///
+/// Cuts at the control points leave panels on which the functions are smooth; it assumes no more. On a panel the
+/// optical depth at the nodes is the integral of the polynomial through the extinctions. Gauss-Legendre rules of 3
+/// and 5, then 5 and 8 points are compared; where they differ by more than the panel's share of the tolerance,
+/// which is its share of the ray's length in the mesh, it is halved.
+pub(crate) struct Integrator<'a> {
+    transfer: &'a TransferFunction,
+    control_points: Vec<f64>,
+    /// The brightest luminance, at least 1: what an error of the transmittance may cost.
+    brightest: f64,
+    tolerance: f64,
+    rules: (Rule<3>, Rule<5>, Rule<8>),
+}
+
+/// One ray's scales.
+#[derive(Clone, Copy)]
+struct Scales {
+    /// Extinction per parameter, of opacity 1.
+    extinction: f64,
+    /// Error allowed per parameter.
+    error: f64,
+}
+
+impl<'a> Integrator<'a> {
+    pub(crate) fn new(transfer: &'a TransferFunction, tolerance: f64) -> Self {
+        let brightest = transfer.color_nodes().iter().flat_map(|node| node.rgb).fold(1.0, f64::max);
+        Self {
+            transfer,
+            control_points: transfer.control_points(),
+            brightest,
+            tolerance,
+            rules: (Rule::new(), Rule::new(), Rule::new()),
+        }
+    }
+
+    /// Integrates over segments in ascending order of their starts. `extinction` is that of opacity 1, per parameter.
+    /// Where segments overlap, extinctions and emissions add.
+    pub(crate) fn integrate(&self, segments: &[Segment], extinction: f64, work: &mut Workspace) -> Gathered {
+        let length: f64 = segments.iter().map(|s| s.t[1] - s.t[0]).sum();
+        let scales = Scales { extinction, error: self.tolerance / length };
+        let mut gathered = Gathered::default();
+        if segments.is_sorted_by(|a, b| a.t[1] <= b.t[0]) {
+            for segment in segments {
+                self.stretch(segment.t, std::slice::from_ref(segment), scales, work, &mut gathered);
+            }
+            return gathered;
+        }
+        let mut ends = std::mem::take(&mut work.ends);
+        let mut active = std::mem::take(&mut work.active);
+        ends.clear();
+        ends.extend(segments.iter().flat_map(|s| s.t));
+        ends.sort_unstable_by(f64::total_cmp);
+        ends.dedup();
+        active.clear();
+        let mut waiting = segments.iter().peekable();
+        for end in ends.windows(2) {
+            active.retain(|s| s.t[1] > end[0]);
+            while let Some(segment) = waiting.next_if(|s| s.t[0] <= end[0]) {
+                active.push(*segment);
+            }
+            self.stretch([end[0], end[1]], &active, scales, work, &mut gathered);
+        }
+        (work.ends, work.active) = (ends, active);
+        gathered
+    }
+
+    /// Integrates over an interval that every one of `segments` covers.
+    fn stretch(
+        &self,
+        [from, to]: [f64; 2],
+        segments: &[Segment],
+        scales: Scales,
+        work: &mut Workspace,
+        sum: &mut Gathered,
+    ) {
+        if segments.is_empty() || self.hidden(sum) {
+            return;
+        }
+        let Workspace { cuts, layers, .. } = work;
+        cuts.clear();
+        cuts.push(from);
+        for segment in segments {
+            let [low, high] = [segment.scalar[0].min(segment.scalar[1]), segment.scalar[0].max(segment.scalar[1])];
+            let first = self.control_points.partition_point(|&c| c <= low);
+            let crossed = self.control_points[first..].iter().take_while(|&&c| c < high);
+            cuts.extend(crossed.map(|&c| parameter_at(segment, c)).filter(|&t| from < t && t < to));
+        }
+        cuts.push(to);
+        if cuts.len() > 2 {
+            cuts.sort_unstable_by(f64::total_cmp);
+        }
+        for i in 1..cuts.len() {
+            let panel = [cuts[i - 1], cuts[i]];
+            if panel[0] < panel[1] {
+                let middle = 0.5 * (panel[0] + panel[1]);
+                layers.clear();
+                layers.extend(segments.iter().map(|&segment| self.layer(segment, scalar_at(&segment, middle))));
+                self.panel(layers, panel, scales, 0, sum);
+            }
+        }
+    }
+
+    /// The segment as seen between the control points around the scalar `inside`; one at `inside` is below it.
+    fn layer(&self, segment: Segment, inside: f64) -> Layer {
+        let next = self.control_points.partition_point(|&c| c <= inside);
+        let low = next.checked_sub(1).map_or(f64::NEG_INFINITY, |i| self.control_points[i]);
+        let high = self.control_points.get(next).copied().unwrap_or(f64::INFINITY);
+        Layer { segment, between: [low, high] }
+    }
+
+    fn panel(&self, layers: &[Layer], [a, b]: [f64; 2], scales: Scales, halvings: u32, sum: &mut Gathered) {
+        if self.hidden(sum) {
+            return;
+        }
+        let best = self.estimate(&self.rules.1, layers, [a, b], scales, sum);
+        if best.depth == 0.0 {
+            return;
+        }
+        let transmittance = (-sum.optical_depth).exp();
+        let allowed = scales.error * (b - a);
+        let mut accepted = None;
+        if best.depth <= MOST_DEPTH || halvings == MOST_HALVINGS {
+            let rough = self.estimate(&self.rules.0, layers, [a, b], scales, sum);
+            if halvings == MOST_HALVINGS || self.agree(&rough, &best, transmittance, allowed) {
+                accepted = Some(best);
+            } else {
+                let finer = self.estimate(&self.rules.2, layers, [a, b], scales, sum);
+                accepted = self.agree(&best, &finer, transmittance, allowed).then_some(finer);
+            }
+        }
+        match accepted {
+            Some(Estimate { color, depth }) => {
+                for channel in 0..3 {
+                    sum.color[channel] += transmittance * color[channel];
+                }
+                sum.optical_depth += depth;
+            }
+            None => {
+                let middle = 0.5 * (a + b);
+                self.panel(layers, [a, middle], scales, halvings + 1, sum);
+                self.panel(layers, [middle, b], scales, halvings + 1, sum);
+            }
+        }
+    }
+
+    /// Whether two estimates differ by no more than is allowed, or than rounding explains.
+    fn agree(&self, rough: &Estimate, fine: &Estimate, transmittance: f64, allowed: f64) -> bool {
+        let depth_error = self.brightest * (fine.depth - rough.depth).abs();
+        let light = fine.color.iter().fold(0.0, |m: f64, &c| m.max(c));
+        let light_error = (0..3).map(|c| (fine.color[c] - rough.color[c]).abs()).fold(0.0, f64::max);
+        let rounding = ROUNDING * (light + self.brightest * fine.depth);
+        transmittance * (light_error + depth_error) <= allowed.max(transmittance * rounding)
+    }
+
+    fn estimate<const N: usize>(
+        &self,
+        rule: &Rule<N>,
+        layers: &[Layer],
+        [a, b]: [f64; 2],
+        scales: Scales,
+        sum: &mut Gathered,
+    ) -> Estimate {
+        sum.evaluations += N;
+        let mut extinctions = [0.0; N];
+        let mut emissions = [[0.0; 3]; N];
+        for i in 0..N {
+            let t = a + (b - a) * rule.nodes[i];
+            for layer in layers {
+                let (opacity, luminance) = self.look_up(layer, t);
+                let extinction = opacity * scales.extinction;
+                extinctions[i] += extinction;
+                for channel in 0..3 {
+                    emissions[i][channel] += luminance[channel] * extinction;
+                }
+            }
+        }
+        let mut estimate = Estimate { color: [0.0; 3], depth: 0.0 };
+        if extinctions == [0.0; N] {
+            return estimate;
+        }
+        for i in 0..N {
+            let before: f64 = (0..N).map(|j| rule.running[i][j] * extinctions[j]).sum();
+            let weight = rule.weights[i] * (b - a);
+            estimate.depth += weight * extinctions[i];
+            let seen = weight * (-(b - a) * before).exp();
+            for channel in 0..3 {
+                estimate.color[channel] += seen * emissions[i][channel];
+            }
+        }
+        estimate
+    }
+
+    /// Opacity and luminance at a parameter, as limits from inside the layer.
+    fn look_up(&self, layer: &Layer, t: f64) -> (f64, [f64; 3]) {
+        let [low, high] = layer.between;
+        let s = scalar_at(&layer.segment, t).clamp(low, high);
+        let below = s == high;
+        let opacity = if below { self.transfer.opacity_below(s) } else { self.transfer.opacity(s) };
+        if opacity == 0.0 {
+            return (0.0, [0.0; 3]);
+        }
+        (opacity, if below { self.transfer.luminance_below(s) } else { self.transfer.luminance(s) })
+    }
+
+    /// Whether nothing that is still to come can be seen.
+    fn hidden(&self, sum: &Gathered) -> bool {
+        sum.optical_depth > 1.0 && (-sum.optical_depth).exp() * self.brightest < HIDDEN * self.tolerance
+    }
+}
+
+fn scalar_at(segment: &Segment, t: f64) -> f64 {
+    let [s0, s1] = segment.scalar;
+    if s0 == s1 {
+        return s0;
+    }
+    let share = (t - segment.t[0]) / (segment.t[1] - segment.t[0]);
+    s0 * (1.0 - share) + s1 * share
+}
+
+/// Where the scalar takes a value between its ends'.
+fn parameter_at(segment: &Segment, value: f64) -> f64 {
+    let [s0, s1] = segment.scalar;
+    // Halves, so that the difference of two large scalars does not overflow.
+    let share = (0.5 * value - 0.5 * s0) / (0.5 * s1 - 0.5 * s0);
+    segment.t[0] + (segment.t[1] - segment.t[0]) * share
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,159 @@
+//! From cell to cell along a line.
+
+use glam::DVec3;
+use tetlux_mesh::{Location, NONE, ScalarField, TetMesh};
+
+use crate::hierarchy::{BoundaryFace, Hierarchy};
+use crate::line::{Line, Vertex};
+
+/// A stretch of a line with the scalar linear along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Segment {
+    /// Parameter of its ends, ascending.
+    pub(crate) t: [f64; 2],
+    /// Scalar at its ends.
+    pub(crate) scalar: [f64; 2],
+}
+
+/// The mesh in coordinates of about unit size: relative to its origin, times a power of two, hence exact.
+pub(crate) struct Space<'a> {
+    pub(crate) mesh: &'a TetMesh,
+    pub(crate) scalar: &'a ScalarField,
+    /// Power of two that takes the mesh's half-width into [0.5, 1).
+    pub(crate) scale: f64,
+    /// Cells without optical depth: flat, or with a value missing.
+    pub(crate) empty: Vec<bool>,
+}
+
+impl Space<'_> {
+    pub(crate) fn position(&self, vertex: u32) -> DVec3 {
+        self.mesh.points()[vertex as usize].as_dvec3() * self.scale
+    }
+
+    fn vertex(&self, line: &Line, index: u32) -> Vertex {
+        let position = self.position(index);
+        let scalar = match self.scalar.location {
+            Location::Point => self.scalar.values[index as usize],
+            Location::Cell => 0.0,
+        };
+        Vertex { index, position, t: line.parameter(position), scalar }
+    }
+}
+
+/// A face that the line crosses into the next cell.
+struct Crossing {
+    vertices: [Vertex; 3],
+    /// The line's side of the edges 01, 12 and 20; all positive.
+    sides: [f64; 3],
+}
+
+impl Crossing {
+    /// The boundary face, if the line enters through it.
+    fn enter(space: &Space, line: &Line, face: BoundaryFace) -> Option<Self> {
+        let v = face.vertices(space.mesh.cells()).map(|index| space.vertex(line, index));
+        let mut sides = [0.0; 3];
+        for k in 0..3 {
+            let side = line.side(&v[k], &v[(k + 1) % 3]);
+            if !side.positive {
+                return None;
+            }
+            sides[k] = side.value;
+        }
+        Some(Self { vertices: v, sides })
+    }
+
+    /// Parameter and scalar where the line crosses: the sides are barycentric coordinates, times a common factor.
+    fn place(&self) -> (f64, f64) {
+        let [a, b, c] = &self.vertices;
+        let [wc, wa, wb] = self.sides;
+        let sum = wa + wb + wc;
+        // They cannot all be 0: the line would lie in the face's plane, and cross it, after perturbation, at its own
+        // origin, which is outside the mesh.
+        let per = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+        let mix = |x: f64, y: f64, z: f64| (wa * per) * x + (wb * per) * y + (wc * per) * z;
+        (mix(a.t, b.t, c.t), mix(a.scalar, b.scalar, c.scalar))
+    }
+}
+
+/// Appends the segments of `line` in the mesh between the parameters `start` and `end`, in ascending order.
+///
+/// The line's origin must lie outside the mesh's convex hull, the mesh in its direction.
+pub(crate) fn segments(
+    space: &Space,
+    hierarchy: &Hierarchy,
+    line: &Line,
+    [start, end]: [f64; 2],
+    found: &mut Vec<Segment>,
+) {
+    hierarchy.candidates(line, end, |face| {
+        if let Some(entry) = Crossing::enter(space, line, face) {
+            walk(space, line, face.cell(), entry, [start, end], found);
+        }
+    });
+    let ascending = |a: &Segment, b: &Segment| a.t[0].total_cmp(&b.t[0]).then(a.t[1].total_cmp(&b.t[1]));
+    if !found.is_sorted_by(|a, b| ascending(a, b).is_le()) {
+        found.sort_unstable_by(ascending);
+    }
+}
+
+/// Follows the line from `entry` into `cell` and on until it leaves through a boundary face or passes `end`.
+fn walk(
+    space: &Space,
+    line: &Line,
+    mut cell: u32,
+    mut face: Crossing,
+    [start, end]: [f64; 2],
+    found: &mut Vec<Segment>,
+) {
+    let cells = space.mesh.cells();
+    let (mut t, mut scalar) = face.place();
+    // Each cell is crossed at most once; the bound keeps a contradiction from looping for ever.
+    for _ in 0..cells.len() {
+        if cell == NONE || t >= end {
+            return;
+        }
+        let vertices = cells[cell as usize];
+        // The entry face's vertices cancel out of the cell's.
+        let apex = face.vertices.iter().fold(vertices.iter().fold(0, |x, v| x ^ v), |x, v| x ^ v.index);
+        let apex = space.vertex(line, apex);
+        let sides = face.vertices.each_ref().map(|v| line.side(v, &apex));
+        let Some(k) = (0..3).find(|&k| !sides[k].positive && sides[(k + 1) % 3].positive) else {
+            debug_assert!(false, "the line enters cell {cell} and does not leave it");
+            return;
+        };
+        let [next, behind] = [(k + 1) % 3, (k + 2) % 3];
+        let behind = face.vertices[behind].index;
+        let exit = (0..4).find(|&i| vertices[i] == behind).unwrap_or(0);
+        face = Crossing {
+            vertices: [face.vertices[k], face.vertices[next], apex],
+            sides: [face.sides[k], sides[next].value, -sides[k].value],
+        };
+        let (leave, leave_scalar) = face.place();
+        let leave = leave.max(t);
+        if !space.empty[cell as usize] {
+            let scalars = match space.scalar.location {
+                Location::Point => [scalar, leave_scalar],
+                Location::Cell => [space.scalar.values[cell as usize]; 2],
+            };
+            found.extend(clip(Segment { t: [t, leave], scalar: scalars }, [start, end]));
+        }
+        (t, scalar) = (leave, leave_scalar);
+        cell = space.mesh.neighbors()[cell as usize][exit];
+    }
+    debug_assert!(cell == NONE, "the line crosses more cells than there are");
+}
+
+/// The part of a segment in an interval; `None` if it has no length.
+fn clip(segment: Segment, [start, end]: [f64; 2]) -> Option<Segment> {
+    let [from, to] = segment.t;
+    let t = [from.max(start), to.min(end)];
+    let scalar_at = |x: f64| {
+        let share = (x - from) / (to - from);
+        segment.scalar[0] * (1.0 - share) + segment.scalar[1] * share
+    };
+    let scalar = [
+        if t[0] == from { segment.scalar[0] } else { scalar_at(t[0]) },
+        if t[1] == to { segment.scalar[1] } else { scalar_at(t[1]) },
+    ];
+    (t[0] < t[1]).then_some(Segment { t, scalar })
+}

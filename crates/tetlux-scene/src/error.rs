@@ -1,0 +1,69 @@
+//! What can be wrong with a scene.
+
+use std::path::PathBuf;
+
+use tetlux_mesh::MeshError;
+use tetlux_optics::preset::PresetError;
+
+/// Why a scene could not be read or made.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// A file could not be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The scene or preset file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is not TOML, or has an unknown key or a value of the wrong type.
+    #[error("{path}:{line}: {message}")]
+    Syntax {
+        /// The scene file.
+        path: String,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong there.
+        message: String,
+    },
+    /// A value that cannot be.
+    #[error("{path}:{line}: {key}: {message}")]
+    Value {
+        /// The scene file.
+        path: String,
+        /// Line, from 1.
+        line: usize,
+        /// The key.
+        key: &'static str,
+        /// The value found and what it may be.
+        message: String,
+    },
+    /// Something the scene needs is neither in the file nor given otherwise.
+    #[error("{path}: {message}")]
+    Missing {
+        /// The scene file.
+        path: String,
+        /// What is missing and how to give it.
+        message: String,
+    },
+    /// The preset file does not hold a usable preset.
+    #[error("{}: {source}", path.display())]
+    Preset {
+        /// The preset file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: PresetError,
+    },
+    /// The field cannot be had.
+    #[error(transparent)]
+    Field(#[from] MeshError),
+    /// A camera that sees nothing.
+    #[error("camera: {reason}")]
+    Camera {
+        /// Why.
+        reason: String,
+    },
+    /// A combination that cannot be.
+    #[error("{0}")]
+    Method(String),
+}

@@ -1,0 +1,185 @@
+//! The scene file, checked as far as it can be without its mesh.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use tetlux_mesh::{Component, TetMesh};
+use tetlux_optics::preset::read_preset;
+use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
+
+use crate::{Camera, Method, Projection, Scene, SceneError, document};
+
+/// A scene without its mesh: plain values, which command-line flags may override.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// What the picture shows.
+    pub title: String,
+    /// The mesh file, if the scene names one.
+    pub mesh: Option<PathBuf>,
+    /// The PLOT3D solution that goes with it.
+    pub solution: Option<PathBuf>,
+    /// Tetrahedra a hexahedron becomes: 5 or 6.
+    pub split: Option<u32>,
+    /// The field that is classified; none: the mesh's only one.
+    pub field: Option<String>,
+    /// A component of a vector field, from 0; none: its magnitude.
+    pub component: Option<usize>,
+    /// Luminance and opacity over it.
+    pub transfer: TransferSource,
+    /// The scalars that the first and last node are stretched to; none: nodes stay where they are, a preset spans
+    /// the field's range.
+    pub range: Option<[f64; 2]>,
+    /// World length over which an opacity of 1 is an optical depth of 1; none: the mesh's mean edge length.
+    pub unit_distance: Option<f64>,
+    /// Cameras; none: one is framed automatically.
+    pub cameras: Vec<CameraSpec>,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Linear RGB behind the volume.
+    pub background: [f32; 3],
+    /// The PNG shows the composited values as they are, as ParaView does, instead of encoding linear light.
+    pub display_space: bool,
+    /// How to render.
+    pub method: Method,
+    /// The scene in messages: its path.
+    pub name: String,
+}
+
+/// Where a transfer function comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TransferSource {
+    /// The scene file itself.
+    Nodes(TransferFunction),
+    /// A ParaView preset file.
+    Preset {
+        /// The file: JSON or XML.
+        path: PathBuf,
+        /// Which of its presets; none: its only one.
+        name: Option<String>,
+    },
+}
+
+/// A camera, explicit as far as it is given, framed automatically for the rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraSpec {
+    /// World position of the eye.
+    pub position: Option<DVec3>,
+    /// World position in the middle of the picture; none: the mesh's centre.
+    pub focal_point: Option<DVec3>,
+    /// Direction of view of a camera without a position: it stands where it sees the whole mesh.
+    pub direction: Option<DVec3>,
+    /// A direction that is seen upright.
+    pub view_up: DVec3,
+    /// None: perspective, 30 degrees.
+    pub projection: Option<Projection>,
+    /// Depth before which nothing is seen.
+    pub near: f64,
+}
+
+/// Direction of view where the scene says nothing: three quarters from the front, from above.
+const DEFAULT_DIRECTION: DVec3 = DVec3::new(-1.0, 1.5, -0.8);
+
+impl SceneFile {
+    /// Reads a scene file. Paths in it are relative to it.
+    pub fn read(path: &Path) -> Result<SceneFile, SceneError> {
+        let text = read_text(path)?;
+        document::parse(path, &text)
+    }
+
+    /// Reads the text of a scene file; `path` is where it came from.
+    pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<SceneFile, SceneError> {
+        document::parse(path.as_ref(), text)
+    }
+
+    /// The scene on a mesh, seen by its camera of that number.
+    pub fn scene(&self, mesh: &TetMesh, camera: usize) -> Result<Scene, SceneError> {
+        let field = match (&self.field, mesh.fields()) {
+            (Some(name), _) => name.clone(),
+            (None, [only]) => only.name.clone(),
+            (None, fields) => {
+                let names: Vec<&str> = fields.iter().map(|f| f.name.as_str()).collect();
+                return Err(self.missing(format!(
+                    "the mesh has {} fields ({}): name one with name = \"...\" under [field]",
+                    names.len(),
+                    names.join(", ")
+                )));
+            }
+        };
+        let scalar = mesh.scalar(&field, self.component.map_or(Component::Magnitude, Component::Index))?;
+        Ok(Scene {
+            transfer: self.transfer(scalar.range)?,
+            unit_distance: self.unit_distance.unwrap_or_else(|| mesh.mean_edge_length()),
+            camera: self.camera(mesh, camera)?,
+            size: self.size,
+            background: self.background,
+            method: self.method,
+            scalar,
+        })
+    }
+
+    fn transfer(&self, field_range: [f64; 2]) -> Result<TransferFunction, SceneError> {
+        match (&self.transfer, self.range) {
+            (TransferSource::Nodes(nodes), None) => Ok(nodes.clone()),
+            (TransferSource::Nodes(nodes), Some(range)) => Ok(stretched(nodes, range)),
+            (TransferSource::Preset { path, name }, range) => {
+                let failed = |source| SceneError::Preset { path: path.clone(), source };
+                let preset = read_preset(&read_text(path)?, name.as_deref()).map_err(failed)?;
+                // A constant field has no range to span: its value takes the preset's lower end.
+                let [lo, hi] = field_range;
+                let spanned = range.unwrap_or(if lo < hi { field_range } else { [lo, lo + lo.abs().max(1.0)] });
+                preset.transfer_function(Some(spanned)).map_err(failed)
+            }
+        }
+    }
+
+    fn camera(&self, mesh: &TetMesh, number: usize) -> Result<Camera, SceneError> {
+        let spec = match self.cameras.get(number) {
+            Some(spec) => spec.clone(),
+            None if number == 0 => CameraSpec {
+                position: None,
+                focal_point: None,
+                direction: None,
+                view_up: DVec3::Z,
+                projection: None,
+                near: 0.0,
+            },
+            None => {
+                return Err(self.missing(format!(
+                    "there is no camera {number}: the scene has {}, numbered from 0",
+                    self.cameras.len()
+                )));
+            }
+        };
+        let framed = Camera::framing(mesh.bounds(), spec.direction.unwrap_or(DEFAULT_DIRECTION), spec.view_up);
+        let camera = Camera {
+            position: spec.position.unwrap_or(framed.position),
+            focal_point: spec.focal_point.unwrap_or(framed.focal_point),
+            view_up: spec.view_up,
+            projection: spec.projection.unwrap_or(framed.projection),
+            near: spec.near,
+        };
+        camera.view(self.size)?;
+        Ok(camera)
+    }
+
+    fn missing(&self, message: String) -> SceneError {
+        SceneError::Missing { path: self.name.clone(), message }
+    }
+}
+
+/// A transfer function with its first and last control point moved to the ends of a range.
+fn stretched(nodes: &TransferFunction, range: [f64; 2]) -> TransferFunction {
+    let points = nodes.control_points();
+    let (first, last) = (points[0], points[points.len() - 1]);
+    // One control point: nothing to stretch.
+    let scale = if last > first { (range[1] - range[0]) / (last - first) } else { 0.0 };
+    let place = |s: f64| range[0] + (s - first) * scale;
+    let color = nodes.color_nodes().iter().map(|n| ColorNode { s: place(n.s), ..*n }).collect();
+    let opacity = nodes.opacity_nodes().iter().map(|n| OpacityNode { s: place(n.s), ..*n }).collect();
+    // Monotone and finite, as the nodes are.
+    TransferFunction::new(color, opacity).unwrap_or_else(|_| nodes.clone())
+}
+
+fn read_text(path: &Path) -> Result<String, SceneError> {
+    std::fs::read_to_string(path).map_err(|source| SceneError::Read { path: path.into(), source })
+}

@@ -1,0 +1,56 @@
+//! What is to be rendered, and what of it need not be.
+//!
+//! A [`Scene`] is a transfer function, a camera, a picture size and a method, read from a TOML file
+//! ([`SceneFile`]) or made in code; a [`View`] is its camera resolved to pixels and rays; a [`Plan`] says, before
+//! anything runs, what is done and skipped for a mesh, and why.
+//!
+//! ```
+//! use tetlux_scene::SceneFile;
+//!
+//! let file = SceneFile::parse("example.toml", r#"
+//!     [field]
+//!     name = "temperature"
+//!     [transfer]
+//!     color = [[0.0, 0.1, 0.2, 1.0], [1.0, 1.0, 0.4, 0.1]]
+//!     opacity = [[0.0, 0.0], [1.0, 0.8]]
+//! "#)?;
+//! assert_eq!(file.size, [800, 800]);
+//! # Ok::<(), tetlux_scene::SceneError>(())
+//! ```
+
+mod camera;
+mod document;
+mod error;
+mod file;
+mod method;
+mod plan;
+mod view;
+
+pub use camera::{Camera, Projection};
+pub use error::SceneError;
+pub use file::{CameraSpec, SceneFile, TransferSource};
+pub use method::{Backend, Integrator, Method, Order, UnknownName, parse_name};
+pub use plan::{Device, Plan, Skips};
+pub use view::View;
+
+use tetlux_mesh::ScalarField;
+use tetlux_optics::transfer::TransferFunction;
+
+/// Everything about a picture but the mesh.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The scalar that is classified.
+    pub scalar: ScalarField,
+    /// Luminance and opacity over the scalar.
+    pub transfer: TransferFunction,
+    /// World length over which an opacity of 1 is an optical depth of 1: extinction = opacity / unit distance.
+    pub unit_distance: f64,
+    /// Where the eye is.
+    pub camera: Camera,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Linear RGB behind the volume.
+    pub background: [f32; 3],
+    /// How to render, and to what error.
+    pub method: Method,
+}

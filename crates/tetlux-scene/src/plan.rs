@@ -1,0 +1,198 @@
+//! What is done for a scene, and what is not, and why: decided before anything runs.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use tetlux_mesh::TetMesh;
+
+use crate::{Backend, Integrator, Order, Scene, SceneError, View};
+
+/// What a plan needs to know of a graphics adapter.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Device {
+    /// The adapter's name.
+    pub name: String,
+    /// It runs on the processor.
+    pub software: bool,
+    /// It blends into 32-bit floating-point targets.
+    pub blends_f32: bool,
+}
+
+/// Cells that are not drawn, by the first reason that holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Skips {
+    /// A vertex has no finite value: nothing can be classified.
+    pub no_data: usize,
+    /// Opacity is zero on the cell's whole scalar range.
+    pub transparent: usize,
+    /// Zero volume: no ray is inside for any length.
+    pub flat: usize,
+    /// Outside the frustum, or behind the eye.
+    pub outside: usize,
+}
+
+/// The decisions for one picture of one mesh.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// `Gpu` or `Cpu`.
+    pub backend: Backend,
+    /// Any but `Auto`.
+    pub order: Order,
+    /// The integral inside a cell.
+    pub integrator: Integrator,
+    /// The camera resolved.
+    pub view: View,
+    /// The cells to draw, in mesh order.
+    pub cells: Vec<u32>,
+    /// The cells that are not drawn.
+    pub skips: Skips,
+    /// Each decision and its reason.
+    pub reasons: Vec<(&'static str, String)>,
+    /// What may spoil the picture.
+    pub warnings: Vec<String>,
+}
+
+impl Plan {
+    /// Decides for a scene on a mesh; `device` is the adapter there is, if any.
+    ///
+    /// # Errors
+    ///
+    /// A camera that sees nothing, or a combination of backend, order and device that cannot be.
+    pub fn new(scene: &Scene, mesh: &TetMesh, device: Option<&Device>) -> Result<Plan, SceneError> {
+        let view = scene.camera.view(scene.size)?;
+        let mut warnings = Vec::new();
+        let (backend, backend_reason) = choose_backend(scene.method.backend, device)?;
+        let (order, order_reason) = choose_order(scene, backend)?;
+        if order == Order::Centroid {
+            warnings.push(
+                "centroid order is not exact: where the transfer function has narrow peaks, pixels may be wrong \
+                 by far more than the budget (`compare` shows them; --order pixel mends them)"
+                    .into(),
+            );
+        }
+        let (cells, skips) = visible_cells(scene, mesh, &view);
+        if skips.no_data > 0 {
+            warnings.push(format!("{} cells have vertices without a finite value and are left out", skips.no_data));
+        }
+        let method = match scene.method.integrator {
+            Integrator::Direct => "linear luminance and extinction, split at the function's control points",
+            Integrator::Average => "mean luminance and extinction between control points: colour is approximate",
+        };
+        let reasons = vec![
+            ("backend", format!("{backend}: {backend_reason}")),
+            ("order", format!("{order}: {order_reason}")),
+            ("integrator", format!("{}: {method}", scene.method.integrator)),
+            (
+                "cells",
+                format!(
+                    "{} of {} drawn; {} transparent, {} outside the view, {} flat, {} without data are skipped",
+                    cells.len(),
+                    mesh.cells().len(),
+                    skips.transparent,
+                    skips.outside,
+                    skips.flat,
+                    skips.no_data
+                ),
+            ),
+        ];
+        Ok(Plan { backend, order, integrator: scene.method.integrator, view, cells, skips, reasons, warnings })
+    }
+}
+
+impl std::fmt::Display for Plan {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (what, why) in &self.reasons {
+            writeln!(f, "  {what:<10} {why}")?;
+        }
+        Ok(())
+    }
+}
+
+fn choose_backend(wanted: Backend, device: Option<&Device>) -> Result<(Backend, String), SceneError> {
+    match (wanted, device) {
+        (Backend::Cpu, _) => Ok((Backend::Cpu, "as asked".into())),
+        (Backend::Gpu, Some(d)) if d.blends_f32 => Ok((Backend::Gpu, format!("as asked, on {}", d.name))),
+        (Backend::Gpu, Some(d)) => Err(SceneError::Method(format!(
+            "{} cannot blend 32-bit floating-point targets, without which the picture's error is not bounded: \
+             use --backend cpu",
+            d.name
+        ))),
+        (Backend::Gpu, None) => {
+            Err(SceneError::Method("there is no graphics adapter: use --backend cpu, or install a driver".into()))
+        }
+        (Backend::Auto, None) => Ok((Backend::Cpu, "there is no graphics adapter".into())),
+        (Backend::Auto, Some(d)) if d.software => {
+            Ok((Backend::Cpu, format!("{} is this processor too, and the direct way is exact and faster", d.name)))
+        }
+        (Backend::Auto, Some(d)) if !d.blends_f32 => {
+            Ok((Backend::Cpu, format!("{} cannot blend 32-bit floating-point targets", d.name)))
+        }
+        (Backend::Auto, Some(d)) => Ok((Backend::Gpu, d.name.clone())),
+    }
+}
+
+fn choose_order(scene: &Scene, backend: Backend) -> Result<(Order, String), SceneError> {
+    let one_luminance = scene.transfer.single_luminance().is_some();
+    match (scene.method.order, backend) {
+        (Order::Pixel, Backend::Gpu) => Err(SceneError::Method(
+            "order \"pixel\" sorts every pixel's segments, which only the CPU back end does: use --backend cpu, \
+             or --order centroid"
+                .into(),
+        )),
+        (Order::Auto, _) if one_luminance => {
+            Ok((Order::None, "there is one luminance throughout, so the order does not matter".into()))
+        }
+        (Order::Auto, Backend::Cpu) => Ok((Order::Pixel, "exact where cells do not overlap".into())),
+        (Order::Auto, _) => Ok((Order::Centroid, "the only one this back end has".into())),
+        (asked, _) => Ok((asked, "as asked".into())),
+    }
+}
+
+/// Why a cell is not drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    Drawn,
+    NoData,
+    Transparent,
+    Flat,
+    Outside,
+}
+
+fn visible_cells(scene: &Scene, mesh: &TetMesh, view: &View) -> (Vec<u32>, Skips) {
+    let offset = mesh.origin() - view.eye;
+    let eye_space: Vec<DVec3> = mesh.points().par_iter().map(|p| view.rotate(p.as_dvec3() + offset)).collect();
+    let frustum = view.frustum();
+    let ranges = mesh.scalar_ranges(&scene.scalar);
+    let fates: Vec<Fate> = mesh
+        .cells()
+        .par_iter()
+        .zip(&ranges)
+        .map(|(cell, &range)| {
+            let p = cell.map(|v| eye_space[v as usize]);
+            if range[0].is_nan() {
+                Fate::NoData
+            } else if scene.transfer.max_opacity(range) <= 0.0 {
+                Fate::Transparent
+            } else if frustum.iter().any(|&(n, c)| p.iter().all(|&q| n.dot(q) + c < 0.0)) {
+                Fate::Outside
+            } else if is_flat(mesh, cell) {
+                Fate::Flat
+            } else {
+                Fate::Drawn
+            }
+        })
+        .collect();
+    let count = |fate| fates.iter().filter(|&&f| f == fate).count();
+    let skips = Skips {
+        no_data: count(Fate::NoData),
+        transparent: count(Fate::Transparent),
+        flat: count(Fate::Flat),
+        outside: count(Fate::Outside),
+    };
+    let cells = (0..fates.len() as u32).filter(|&c| fates[c as usize] == Fate::Drawn).collect();
+    (cells, skips)
+}
+
+fn is_flat(mesh: &TetMesh, cell: &[u32; 4]) -> bool {
+    let p = cell.map(|v| mesh.points()[v as usize].as_dvec3());
+    (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) == 0.0
+}

@@ -1,0 +1,200 @@
+// A tetrahedron as a ray sees it.
+//
+// Along the ray through a pixel the inverse depth at which a face's plane is met is linear in the pixel's position, in
+// perspective as it is; in orthographic views the depth itself is. With the depth z_ref of one vertex as reference,
+//
+//     w = z_ref / z - 1   (perspective)        w = z_ref - z   (orthographic)
+//
+// grows towards the eye, is linear in the pixel's position on every plane, and is small for small cells, so that thin
+// ones keep their thickness in single precision. The ray is inside between the least w of the front faces' planes and
+// the greatest w of the back faces'. Nothing is interpolated over triangles, so nothing depends on how a rasteriser
+// rounds vertices.
+import package::lib::view::{View, Vertex, view, ORTHOGRAPHIC};
+
+struct Cell {
+    // The plane of the face opposite each vertex: (dw/dx, dw/dy, w at the plane's origin pixel, +1 front or -1 back).
+    // Vertices are in ascending order of their index in the mesh. Planes 1, 2 and 3 have their origin at vertex 0,
+    // plane 0 at vertex 1 -- the lowest vertex of each -- so that both cells at a face compute the same bits.
+    planes: array<vec4<f32>, 4>,
+    // Gradient of the scalar in eye space; in w the kind.
+    gradient: vec4<f32>,
+}
+
+// Kinds of a cell, as stored in gradient.w.
+const HIDDEN = 0.0;
+const PLAIN = 1.0;
+// Reaches over the near plane, or so far in depth that the vertex farthest away is the one good reference: all planes
+// have their origin there.
+const DEEP = 2.0;
+
+// A cell is DEEP if its vertices' depths differ by more than this factor.
+const DEEP_RATIO = 4.0;
+
+// Coefficients are limited to this value: sums and products with pixel positions stay finite.
+const STEEPEST = 1e20;
+
+fn cell_kind(z: vec4<f32>) -> f32 {
+    let nearest = min(min(z.x, z.y), min(z.z, z.w));
+    let farthest = max(max(z.x, z.y), max(z.z, z.w));
+    if farthest <= view.near {
+        return HIDDEN;
+    }
+    if !ORTHOGRAPHIC && (nearest < view.near || farthest > DEEP_RATIO * nearest) {
+        return DEEP;
+    }
+    return PLAIN;
+}
+
+// The vertex farthest from the eye.
+fn farthest_vertex(z: vec4<f32>) -> u32 {
+    var far = 0u;
+    for (var i = 1u; i < 4u; i++) {
+        if z[i] > z[far] {
+            far = i;
+        }
+    }
+    return far;
+}
+
+// Plane of the face a, b, c, its vertices in ascending order of index; `inward` is +1 if (b-a) x (c-a) points into the
+// cell and -1 if out of it; w at the pixel of `reference` is the third component.
+fn face_plane(a: Vertex, b: Vertex, c: Vertex, inward: f32, reference: Vertex) -> vec4<f32> {
+    let n = cross(b.frame - a.frame, c.frame - a.frame);
+    // Positive if the eye is on the side that n points away from.
+    var side = dot(n, a.eye);
+    var least = 1e-12 * dot(abs(n), abs(a.eye));
+    var depth = reference.eye.z;
+    if ORTHOGRAPHIC {
+        side = n.z;
+        least = 1e-12 * (abs(n.x) + abs(n.y));
+        depth = 1.0;
+    }
+    // Seen edge-on the plane bounds nothing but the silhouette: any large slope of the right sign does, and both cells
+    // at the face choose the same.
+    let divisor = max(max(abs(side), least), 1e-30);
+    let toward = select(-1.0, 1.0, side >= 0.0);
+    let slope = clamp(n.xy * (depth * view.pixel * toward / divisor), vec2<f32>(-STEEPEST), vec2<f32>(STEEPEST));
+    let offset = clamp(dot(n, reference.frame - a.frame) * toward / divisor, -STEEPEST, STEEPEST);
+    return vec4<f32>(slope, offset, toward * inward);
+}
+
+// v: vertices in ascending order of index; s: their scalars; parity: +1 if that order is positively oriented, else -1.
+fn project_cell(v: array<Vertex, 4>, s: vec4<f32>, parity: f32) -> Cell {
+    var cell: Cell;
+    let z = vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z);
+    let kind = cell_kind(z);
+    if kind == HIDDEN {
+        return cell;
+    }
+    if kind == DEEP {
+        let far = v[farthest_vertex(z)];
+        cell.planes[0] = face_plane(v[1], v[2], v[3], -parity, far);
+        cell.planes[1] = face_plane(v[0], v[2], v[3], parity, far);
+        cell.planes[2] = face_plane(v[0], v[1], v[3], -parity, far);
+        cell.planes[3] = face_plane(v[0], v[1], v[2], parity, far);
+    } else {
+        cell.planes[0] = face_plane(v[1], v[2], v[3], -parity, v[0]);
+        cell.planes[1] = face_plane(v[0], v[2], v[3], parity, v[0]);
+        cell.planes[2] = face_plane(v[0], v[1], v[3], -parity, v[0]);
+        cell.planes[3] = face_plane(v[0], v[1], v[2], parity, v[0]);
+        // Plane 0 does not hold vertex 0: its origin is its own lowest vertex, where its depth is known.
+        let step = v[0].frame.z - v[1].frame.z;
+        if ORTHOGRAPHIC {
+            cell.planes[0].z = step;
+        } else {
+            cell.planes[0].z = step / v[1].eye.z;
+        }
+    }
+    let e1 = v[1].frame - v[0].frame;
+    let e2 = v[2].frame - v[0].frame;
+    let e3 = v[3].frame - v[0].frame;
+    let volume = dot(e1, cross(e2, e3));
+    let inverse = select(-1.0, 1.0, volume >= 0.0) / max(abs(volume), 1e-30);
+    let sum = (s.y - s.x) * cross(e2, e3) + (s.z - s.x) * cross(e3, e1) + (s.w - s.x) * cross(e1, e2);
+    let gradient = clamp(sum * inverse, vec3<f32>(-STEEPEST), vec3<f32>(STEEPEST));
+    cell.gradient = vec4<f32>(gradient, kind);
+    return cell;
+}
+
+// What a ray needs of a cell besides its planes and gradient.
+struct Reference {
+    // Pixels at which planes 1 to 3, and plane 0, have their origin.
+    origins: vec4<f32>,
+    // Depth of the reference vertex, and its scalar.
+    depth: f32,
+    scalar: f32,
+    // w of the farthest and of the nearest vertex in front of the near plane.
+    w: vec2<f32>,
+    // Smallest and largest scalar.
+    s: vec2<f32>,
+}
+
+fn cell_reference(v: array<Vertex, 4>, s: vec4<f32>, kind: f32) -> Reference {
+    let z = vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z);
+    let farthest = max(max(z.x, z.y), max(z.z, z.w));
+    let nearest = max(min(min(z.x, z.y), min(z.z, z.w)), view.near);
+    var reference: Reference;
+    var origins = vec4<f32>(v[0].pixel, v[1].pixel);
+    reference.depth = z.x;
+    reference.scalar = s.x;
+    if kind == DEEP {
+        let far = farthest_vertex(z);
+        origins = vec4<f32>(v[far].pixel, v[far].pixel);
+        reference.depth = z[far];
+        reference.scalar = s[far];
+    }
+    reference.origins = origins;
+    let range = vec2<f32>(farthest, nearest);
+    if ORTHOGRAPHIC {
+        reference.w = reference.depth - range;
+    } else {
+        reference.w = (reference.depth - range) / range;
+    }
+    reference.s = vec2<f32>(min(min(s.x, s.y), min(s.z, s.w)), max(max(s.x, s.y), max(s.z, s.w)));
+    return reference;
+}
+
+// The part of a ray inside a cell.
+struct Segment {
+    // Scalar at the front and at the back end.
+    s_front: f32,
+    s_back: f32,
+    // In device units; 0 where the ray misses the cell.
+    length: f32,
+}
+
+// The segment of the ray through `at`, in pixels from the picture's middle.
+fn cell_segment(planes: array<vec4<f32>, 4>, gradient: vec3<f32>, reference: Reference, at: vec2<f32>) -> Segment {
+    let from_0 = at - reference.origins.xy;
+    let from_1 = at - reference.origins.zw;
+    var front = reference.w.y;
+    var back = reference.w.x;
+    for (var i = 0u; i < 4u; i++) {
+        let plane = planes[i];
+        let from_origin = select(from_0, from_1, i == 0u);
+        let w = dot(plane.xy, from_origin) + plane.z;
+        if plane.w > 0.0 {
+            front = min(front, w);
+        } else {
+            back = max(back, w);
+        }
+    }
+    if !(front > back) {
+        return Segment(0.0, 0.0, 0.0);
+    }
+    let across = from_0 * view.pixel;
+    var s: vec2<f32>;
+    var length_: f32;
+    if ORTHOGRAPHIC {
+        length_ = front - back;
+        s = reference.scalar + dot(gradient.xy, across) - vec2<f32>(front, back) * gradient.z;
+    } else {
+        let direction = vec3<f32>(at * view.pixel, 1.0);
+        let scaled = vec2<f32>(front, back) / (1.0 + vec2<f32>(front, back));
+        length_ = length(direction) * reference.depth * (front - back) / ((1.0 + front) * (1.0 + back));
+        s = reference.scalar
+            + reference.depth * (dot(gradient.xy, across) - scaled * dot(gradient, direction));
+    }
+    s = clamp(s, vec2<f32>(reference.s.x), vec2<f32>(reference.s.y));
+    return Segment(s.x, s.y, length_);
+}
