@@ -38,10 +38,10 @@ fn vertex(position: vec3<f32>) -> Vertex {
     let p = (position - view.pivot_high.xyz) - view.pivot_low.xyz;
     let frame = vec3<f32>(dot(view.right.xyz, p), dot(view.down.xyz, p), dot(view.forward.xyz, p));
     let eye = frame + vec3<f32>(view.right.w, view.down.w, view.forward.w);
-    return Vertex(frame, eye, to_pixel(eye));
+    return Vertex(frame, eye, pixel_of(eye));
 }
 
-fn to_pixel(eye: vec3<f32>) -> vec2<f32> {
+fn pixel_of(eye: vec3<f32>) -> vec2<f32> {
     if ORTHOGRAPHIC {
         return eye.xy / view.pixel;
     }

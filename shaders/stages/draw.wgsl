@@ -1,7 +1,7 @@
 // Draws the cells of a batch, back to front: two triangles a cell that cover its silhouette with a margin; the fragment
 // finds the segment of its own ray, and whether there is one.
 import package::lib::mesh::{corners};
-import package::lib::view::{Vertex, view, to_pixel, ORTHOGRAPHIC};
+import package::lib::view::{Vertex, view, pixel_of, ORTHOGRAPHIC};
 import package::lib::cell::{Cell, Reference, HIDDEN, DEEP, cell_reference, cell_segment};
 import package::lib::transfer::{integrate};
 
@@ -80,7 +80,7 @@ fn deep_bounds(v: array<Vertex, 4>) -> vec4<f32> {
             let b = v[j].eye;
             if (a.z < view.near) != (b.z < view.near) {
                 let t = clamp((view.near - a.z) / (b.z - a.z), 0.0, 1.0);
-                let p = to_pixel(vec3<f32>(a.xy + (b.xy - a.xy) * t, view.near));
+                let p = pixel_of(vec3<f32>(a.xy + (b.xy - a.xy) * t, view.near));
                 bounds = vec4<f32>(min(bounds.xy, p), max(bounds.zw, p));
             }
         }

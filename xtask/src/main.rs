@@ -1,2 +1,54 @@
-//! xtask
-fn main() {}
+//! tetlux at the command line. It parses, calls and prints; the work is done in the crates.
+
+mod compare;
+mod info;
+mod input;
+mod progress;
+mod render;
+mod report;
+mod test;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Direct volume rendering of tetrahedral meshes, with an error it can state.
+#[derive(Parser)]
+#[command(name = "cargo xtask", version, max_term_width = 110)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Render a scene to a PNG and a linear EXR; without a scene file, the built-in one
+    #[command(after_help = render::EXAMPLES)]
+    Render(render::Args),
+    /// Measure a picture's error: a scene against the f64 reference, or one EXR file against another
+    #[command(after_help = compare::EXAMPLES)]
+    Compare(compare::Args),
+    /// Say what a mesh file holds, and what is wrong with it
+    #[command(after_help = info::EXAMPLES)]
+    Info(info::Args),
+    /// Run format, lints, all tests and the documentation; installs a Vulkan driver on Debian if there is none
+    Test,
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Render(args) => render::run(&args).map(|()| true),
+        Command::Compare(args) => compare::run(&args),
+        Command::Info(args) => info::run(&args).map(|()| true),
+        Command::Test => test::run().map(|()| true),
+    };
+    match result {
+        Ok(true) => ExitCode::SUCCESS,
+        // The figures that were printed say why.
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -12,7 +12,7 @@ pub(crate) struct CellType {
     pub(crate) plural: &'static str,
     /// 0 to 3; only cells of dimension 3 have a volume to render.
     pub(crate) dimension: u8,
-    /// Points of each cell; `None` where they differ from cell to cell.
+    /// Points of each cell (files may list more: mid-side points of a cell that is called linear); `None` where they differ from cell to cell.
     pub(crate) points: Option<usize>,
     /// Corners of each face of a linear convex cell, in order round the face; empty if it cannot be split here.
     pub(crate) faces: &'static [&'static [usize]],
@@ -53,8 +53,22 @@ const TYPES: &[CellType] = &[
     of(8, "pixel", "pixels", 2, 4, &[]),
     of(9, "quadrilateral", "quadrilaterals", 2, 4, &[]),
     of(TETRAHEDRON, "tetrahedron", "tetrahedra", 3, 4, &[&[1, 2, 3], &[0, 3, 2], &[0, 1, 3], &[0, 2, 1]]),
-    of(11, "voxel", "voxels", 3, 8, &[&[0, 2, 3, 1], &[4, 5, 7, 6], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 4, 6, 2], &[1, 3, 7, 5]]),
-    of(HEXAHEDRON, "hexahedron", "hexahedra", 3, 8, &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]]),
+    of(
+        11,
+        "voxel",
+        "voxels",
+        3,
+        8,
+        &[&[0, 2, 3, 1], &[4, 5, 7, 6], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 4, 6, 2], &[1, 3, 7, 5]],
+    ),
+    of(
+        HEXAHEDRON,
+        "hexahedron",
+        "hexahedra",
+        3,
+        8,
+        &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]],
+    ),
     of(13, "wedge", "wedges", 3, 6, &[&[0, 1, 2], &[3, 5, 4], &[0, 3, 4, 1], &[1, 4, 5, 2], &[2, 5, 3, 0]]),
     of(14, "pyramid", "pyramids", 3, 5, &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]]),
     named(15, "pentagonal prism", "pentagonal prisms", 3),

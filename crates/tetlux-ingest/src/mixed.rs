@@ -31,7 +31,7 @@ pub struct MixedMesh {
 pub struct MixedCells {
     /// VTK cell type of each cell (vtkCellType.h).
     pub types: Vec<u8>,
-    /// Point indices of all cells, one cell after another.
+    /// Point indices of all cells, one cell after another. Of more points than a cell's type has the first count.
     pub connectivity: Vec<u32>,
     /// End of each cell's indices in `connectivity`.
     pub offsets: Vec<usize>,
@@ -143,16 +143,21 @@ impl MixedMesh {
                 return Err(malformed(Place::Cell(c), "a point index out of range", index.to_string(), &remedy));
             }
             let expected = CellType::of(types[c]).and_then(|t| t.points);
-            if let Some(expected) = expected.filter(|&n| n != end - start) {
+            if let Some(expected) = expected.filter(|&n| end - start < n) {
                 let what = format!("the number of points of a cell of type {}", types[c]);
-                let remedy = format!("it has {expected}");
+                let remedy = format!("it must have {expected}");
                 return Err(malformed(Place::Cell(c), &what, (end - start).to_string(), &remedy));
             }
             start = end;
         }
         if start != connectivity.len() {
             let remedy = "the last offset must be the number of indices";
-            return Err(malformed(Place::File, "indices that belong to no cell", (connectivity.len() - start).to_string(), remedy));
+            return Err(malformed(
+                Place::File,
+                "indices that belong to no cell",
+                (connectivity.len() - start).to_string(),
+                remedy,
+            ));
         }
         self.check_fields()
     }

@@ -115,7 +115,13 @@ fn misfit(source: &Source) -> IngestError {
             let needed = [false, true].map(|iblank| file_length(points, iblank).unwrap_or(u64::MAX));
             if length < needed[0] {
                 let what = format!("a PLOT3D grid of {ni} x {nj} x {nk} points");
-                return IngestError::Truncated { path: source.path.clone(), what, offset: 0, needed: needed[0], found: length };
+                return IngestError::Truncated {
+                    path: source.path.clone(),
+                    what,
+                    offset: 0,
+                    needed: needed[0],
+                    found: length,
+                };
             }
             let what = format!(
                 "a PLOT3D grid of {ni} x {nj} x {nk} points has {} bytes, or {} with iblank",
@@ -135,7 +141,8 @@ fn add_solution(mesh: &mut MixedMesh, solution: Source, grid: Layout) -> Result<
     let points = grid.points;
     solution.section("the dimensions of a PLOT3D solution", 0, 3, 4)?;
     let other = if grid.order == ByteOrder::Big { ByteOrder::Little } else { ByteOrder::Big };
-    let Some(order) = [grid.order, other].into_iter().find(|&o| dimensions(&solution.bytes, o) == Some(grid.dimensions))
+    let Some(order) =
+        [grid.order, other].into_iter().find(|&o| dimensions(&solution.bytes, o) == Some(grid.dimensions))
     else {
         return Err(IngestError::SolutionDiffers {
             path: mesh.path.clone(),

@@ -42,7 +42,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<MixedMesh, IngestError
         return Err(IngestError::UnknownFormat { path: path.into(), found });
     };
     mesh.check()?;
-    note_cells_without_volume(&mut mesh);
+    note_cells(&mut mesh);
     Ok(mesh)
 }
 
@@ -51,10 +51,19 @@ pub fn read_tet_mesh(path: &Path, options: &ReadOptions, split: Split) -> Result
     read(path, options)?.tetrahedralize(split)
 }
 
-fn note_cells_without_volume(mesh: &mut MixedMesh) {
-    let flat = |t: u8| CellType::of(t).is_some_and(|t| t.dimension < 3);
-    let count = mesh.cells.types.iter().filter(|&&t| flat(t)).count();
-    if count > 0 {
-        mesh.notes.push(format!("{count} cells are points, lines or surfaces, without volume: they are left out"));
+/// Notes of the cells that are left out, and of points that are.
+fn note_cells(mesh: &mut MixedMesh) {
+    let kinds = || mesh.cells.types.iter().map(|&t| CellType::of(t));
+    let flat = kinds().flatten().filter(|kind| kind.dimension < 3).count();
+    let more = |(c, kind): &(usize, Option<&CellType>)| {
+        let points = mesh.cells.cell(*c).unwrap_or_default().len();
+        kind.and_then(|k| k.points).is_some_and(|n| points > n)
+    };
+    let long = kinds().enumerate().filter(more).count();
+    if flat > 0 {
+        mesh.notes.push(format!("cells of points, lines or surfaces, without volume: {flat}, left out"));
+    }
+    if long > 0 {
+        mesh.notes.push(format!("cells with more points than their type has: {long}, of which the first points count"));
     }
 }

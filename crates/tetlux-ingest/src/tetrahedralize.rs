@@ -62,8 +62,8 @@ impl MixedMesh {
         let mut first = Vec::new();
         for (c, &number) in self.cells.types.iter().enumerate() {
             let corners = self.cells.cell(c).unwrap_or_default();
-            if let (TETRAHEDRON, &[a, b, c0, d]) = (number, corners) {
-                made.push([a, b, c0, d], c);
+            if let (TETRAHEDRON, Some(&tetrahedron)) = (number, corners.first_chunk()) {
+                made.push(tetrahedron, c);
                 continue;
             }
             match CellType::of(number) {
@@ -101,9 +101,8 @@ fn spread(field: Field, origin: &[u32]) -> Field {
 /// For each point the first that coincides with it, after rounding to single precision about the bounding box's
 /// centre: the points that assembling will make one.
 fn first_coincident(points: &[DVec3]) -> Vec<u32> {
-    let (low, high) = points
-        .iter()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+    let (low, high) =
+        points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
     let centre = low * 0.5 + high * 0.5;
     // Adding zero turns -0 into +0, so that equal points are equal bit for bit.
     let bits = |i: u32| ((points[i as usize] - centre).as_vec3() + glam::Vec3::ZERO).to_array().map(f32::to_bits);
@@ -120,7 +119,7 @@ fn first_coincident(points: &[DVec3]) -> Vec<u32> {
 /// each face itself cut from its smallest corner. How a face is cut then depends on its own corners alone.
 fn pull(kind: &CellType, corners: &[u32], first: &[u32], mut emit: impl FnMut([u32; 4])) {
     let rank = |i: usize| first[corners[i] as usize];
-    let Some(apex) = (0..corners.len()).min_by_key(|&i| rank(i)) else { return };
+    let Some(apex) = (0..kind.points.unwrap_or(0)).min_by_key(|&i| rank(i)) else { return };
     for face in kind.faces {
         if face.iter().any(|&i| rank(i) == rank(apex)) {
             continue;
@@ -134,3 +133,6 @@ fn pull(kind: &CellType, corners: &[u32], first: &[u32], mut emit: impl FnMut([u
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

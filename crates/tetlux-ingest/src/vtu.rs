@@ -27,7 +27,8 @@ pub(crate) fn read(mut source: Source) -> Result<MixedMesh, IngestError> {
     }
     let document = Document::parse(&source)?;
     let mut mesh = MixedMesh { path: source.path.clone(), ..MixedMesh::default() };
-    for (p, piece) in document.pieces.iter().enumerate() {
+    let pieces = document.pieces.iter().filter(|piece| piece.points > 0 || piece.cells > 0);
+    for (p, piece) in pieces.enumerate() {
         let offset = mesh.points.len();
         if offset as u64 + piece.points > u64::from(u32::MAX) {
             let remedy = "32 bits must name every point: split the data set";
@@ -42,7 +43,7 @@ pub(crate) fn read(mut source: Source) -> Result<MixedMesh, IngestError> {
 
 fn read_points(mesh: &mut MixedMesh, source: &Source, document: &Document, piece: &Piece) -> Result<(), IngestError> {
     let Some(array) = piece.arrays.iter().find(|a| a.section == Section::Points) else {
-        return if piece.points == 0 { Ok(()) } else { Err(missing(source, piece, "<Points> has no <DataArray>")) };
+        return Err(missing(source, piece, "<Points> has no <DataArray>"));
     };
     if array.components != 3 {
         let place = Place::Byte(array.at);
@@ -85,7 +86,8 @@ fn read_cells(
         let offset = usize::try_from(end).ok().filter(|&end| end >= last);
         last = offset.ok_or_else(|| source.malformed(place, "the offset of the cell", end, remedy))?;
         let end = first_index.checked_add(last);
-        all_offsets.push(end.ok_or_else(|| source.malformed(place, "the offset of the cell", last, "it is too large"))?);
+        all_offsets
+            .push(end.ok_or_else(|| source.malformed(place, "the offset of the cell", last, "it is too large"))?);
     }
     let indices = integers(source, document, connectivity, last as u64)?;
     all_indices.reserve(indices.len());
@@ -124,17 +126,20 @@ fn read_fields(
         mesh.fields = fields;
         return Ok(());
     }
+    let same = |a: &Field, b: &Field| a.name == b.name && a.location == b.location && a.components == b.components;
     let mut kept = Vec::new();
+    let mut alone = Vec::new();
     for mut field in std::mem::take(&mut mesh.fields) {
-        let same = |f: &&Field| f.name == field.name && f.location == field.location && f.components == field.components;
-        match fields.iter().find(same) {
-            Some(more) => {
-                field.values.extend_from_slice(&more.values);
+        match fields.iter().position(|f| same(f, &field)) {
+            Some(i) => {
+                field.values.append(&mut fields.swap_remove(i).values);
                 kept.push(field);
             }
-            None => mesh.notes.push(format!("field \"{}\" is not in every piece: it is left out", field.name)),
+            None => alone.push(field.name),
         }
     }
+    alone.extend(fields.into_iter().map(|f| f.name));
+    mesh.notes.extend(alone.iter().map(|name| format!("field \"{name}\" is not in every piece: it is left out")));
     mesh.fields = kept;
     Ok(())
 }

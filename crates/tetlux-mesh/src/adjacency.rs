@@ -94,3 +94,6 @@ pub(crate) fn neighbors(cells: usize, pairs: &[Pair], keep: impl Fn(&Pair) -> bo
     }
     table
 }
+
+#[cfg(test)]
+mod tests;

@@ -242,3 +242,6 @@ fn flip(cell: usize, cells: &mut [[u32; 4]], around: &[Vec<usize>], pairs: &mut 
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

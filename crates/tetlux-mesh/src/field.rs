@@ -43,7 +43,7 @@ impl Field {
         Field { name: name.into(), location: Location::Cell, components, values }
     }
 
-    /// Smallest and largest finite value of a component; `None` if there is none.
+    /// Smallest and largest finite value of a component; `None` if there is none, or no such component.
     pub fn range(&self, component: Component) -> Option<[f64; 2]> {
         finite_range(self.scalars(component))
     }
@@ -51,9 +51,9 @@ impl Field {
     /// The scalar of each tuple.
     pub(crate) fn scalars(&self, component: Component) -> impl Iterator<Item = f64> + '_ {
         self.values.chunks_exact(self.components.max(1)).map(move |tuple| match (component, tuple) {
-            (_, [value]) => *value,
+            (Component::Magnitude, [value]) => *value,
             (Component::Magnitude, tuple) => magnitude(tuple),
-            (Component::Index(i), tuple) => tuple[i],
+            (Component::Index(i), tuple) => tuple.get(i).copied().unwrap_or(f64::NAN),
         })
     }
 }
@@ -67,10 +67,10 @@ fn magnitude(tuple: &[f64]) -> f64 {
     largest * tuple.iter().map(|x| (x / largest) * (x / largest)).sum::<f64>().sqrt()
 }
 
-/// Which scalar to take of a tuple. A field of one component is itself, whatever is asked.
+/// Which scalar to take of a tuple.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Component {
-    /// Euclidean norm.
+    /// Euclidean norm; of one component the value itself, sign and all.
     #[default]
     Magnitude,
     /// One component, numbered from 0.
@@ -108,9 +108,10 @@ mod tests {
     #[test]
     fn magnitude_neither_overflows_nor_vanishes() {
         assert_eq!(magnitude(&[3.0, 4.0]), 5.0);
-        assert_eq!(magnitude(&[3e200, 4e200]), 5e200);
-        // Scaling by the largest component keeps the result within two roundings of exact.
-        assert!((magnitude(&[3e-200, 4e-200]) / 5e-200 - 1.0).abs() < 4.0 * f64::EPSILON);
+        // Scaling by the largest component keeps the result within a few roundings of exact.
+        for scale in [1e200, 1e-200] {
+            assert!((magnitude(&[3.0 * scale, 4.0 * scale]) / (5.0 * scale) - 1.0).abs() < 4.0 * f64::EPSILON);
+        }
         assert!(magnitude(&[f64::NAN, 1.0]).is_nan());
         assert!(magnitude(&[1.0, f64::NAN]).is_nan());
     }
@@ -120,6 +121,10 @@ mod tests {
         let field = Field::point("p", 2, vec![1.0, f64::NAN, 3.0, 4.0, f64::INFINITY, 0.0]);
         assert_eq!(field.range(Component::Index(0)), Some([1.0, 3.0]));
         assert_eq!(field.range(Component::Magnitude), Some([5.0, 5.0]));
+        assert_eq!(field.range(Component::Index(2)), None);
+        let signed = Field::point("q", 1, vec![-2.0, 1.0]);
+        assert_eq!(signed.range(Component::Magnitude), Some([-2.0, 1.0]));
+        assert_eq!(signed.range(Component::Index(1)), None);
         assert_eq!(Field::cell("c", 1, vec![f64::NAN]).range(Component::Magnitude), None);
     }
 }

@@ -1,6 +1,13 @@
 //! Meshes made by rule: hexahedral grids of any shape, split into tetrahedra.
 
+pub(crate) mod random;
+mod vortices;
+mod wing;
+
 use glam::DVec3;
+
+pub use vortices::Vortices;
+pub use wing::{WING_FIELD, Wing, wing};
 
 /// How a hexahedron becomes tetrahedra.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -105,3 +112,6 @@ pub fn sphere_shell(counts: [usize; 3], split: Split, center: DVec3, radii: [f64
         center + DVec3::new(ring * longitude.cos(), ring * longitude.sin(), latitude.sin()) * radius
     })
 }
+
+#[cfg(test)]
+mod tests;

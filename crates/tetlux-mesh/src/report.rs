@@ -29,6 +29,7 @@ pub struct Report {
     pub components: usize,
     /// Quadrilaterals of the boundary that are split along one diagonal on one side and along the other on the
     /// other side: there the cells do not conform, and overlap or leave gaps unless the quadrilateral is plane.
+    /// A hole of the shape of one tetrahedron has the same triangles, and counts too.
     pub quads_split_both_ways: usize,
 }
 
@@ -43,7 +44,7 @@ impl Report {
                 edge_lengths = [edge_lengths[0].min(length), edge_lengths[1].max(length)];
             }
             let p = cell.map(|v| mesh.points[v as usize].as_dvec3());
-            volume += (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) / 6.0;
+            volume += (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
         }
         let boundary = boundary_faces(mesh);
         Report {
@@ -54,7 +55,7 @@ impl Report {
             bounds: mesh.bounds().map(|corner| corner.to_array()),
             edge_lengths,
             mean_edge_length: mesh.mean_edge_length(),
-            volume,
+            volume: volume / 6.0,
             boundary_faces: boundary.len(),
             components: components(&mesh.neighbors),
             quads_split_both_ways: quads_split_both_ways(&boundary),
@@ -146,3 +147,6 @@ fn quads_split_both_ways(boundary: &[([u32; 3], u32)]) -> usize {
 
 /// Boundary triangles looked at round one edge: bounds the work on an edge shared by a great many cells.
 const MOST_SHEETS: usize = 64;
+
+#[cfg(test)]
+mod tests;

@@ -14,6 +14,7 @@
 //! | [`preset`] | transfer functions from ParaView's preset files |
 //! | [`segment`] | the weights and whole segments in f64, relative error below 1e-12 |
 //! | [`segment_f32`] | the shader's arithmetic in f32, line by line |
+//! | [`transfer_f32`] | whole segments in the shader's arithmetic |
 //! | [`color_space`] | the colour spaces in which presets are interpolated |
 //!
 //! ```
@@ -36,6 +37,7 @@ pub mod preset;
 pub mod segment;
 pub mod segment_f32;
 pub mod transfer;
+pub mod transfer_f32;
 
 pub use preset::{Preset, PresetError, read_preset};
 pub use transfer::{ColorNode, OpacityNode, Piece, TransferFunction, TransferFunctionError};

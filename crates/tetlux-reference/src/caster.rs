@@ -145,8 +145,8 @@ impl<'a> Caster<'a> {
         // From the foot of the mesh's centre two units back, where no point of the mesh is: it lies within sqrt(3).
         let shift = -origin.dot(direction) / direction.length_squared() - 2.0 / direction.length();
         let start = flush(direction.mul_add(DVec3::splat(shift), origin));
-        // NaN is no hit either.
-        if !(start.length_squared() <= 8.0) {
+        let squared = start.length_squared();
+        if squared.is_nan() || squared > 8.0 {
             return None;
         }
         let line = Line::new(start, direction);

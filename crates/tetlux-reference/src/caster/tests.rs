@@ -1,0 +1,4 @@
+//! Rays through meshes of known shape and light.
+
+mod geometry;
+mod radiance;

@@ -1,0 +1,264 @@
+//! The values of one array, from whichever encoding it has.
+
+use std::borrow::Cow;
+use std::io::Read;
+use std::str::FromStr;
+
+use flate2::read::ZlibDecoder;
+
+use super::base64::Decoder;
+use super::document::{DataArray, Document, Number, Storage};
+use crate::source::{ByteOrder, Source, excerpt, numbers};
+use crate::{IngestError, Place};
+
+/// No deflate stream grows by more (RFC 1951: 258 bytes from two bits), so no more memory is asked for.
+const MOST_GROWTH: u64 = 1032;
+
+/// The values of an array as real numbers; it must have `expected` of them.
+pub(super) fn floats(
+    source: &Source,
+    document: &Document,
+    array: &DataArray,
+    expected: u64,
+) -> Result<Vec<f64>, IngestError> {
+    if let Storage::Text(text) = array.storage {
+        return parse(source, array, text, expected);
+    }
+    let (bytes, order) = (Binary { source, document, array }.decode(expected)?, document.order);
+    Ok(match array.number {
+        Number::Int8 => numbers!(i8, bytes, order, f64::from),
+        Number::UInt8 => numbers!(u8, bytes, order, f64::from),
+        Number::Int16 => numbers!(i16, bytes, order, f64::from),
+        Number::UInt16 => numbers!(u16, bytes, order, f64::from),
+        Number::Int32 => numbers!(i32, bytes, order, f64::from),
+        Number::UInt32 => numbers!(u32, bytes, order, f64::from),
+        Number::Int64 => numbers!(i64, bytes, order, |v| v as f64),
+        Number::UInt64 => numbers!(u64, bytes, order, |v| v as f64),
+        Number::Float32 => numbers!(f32, bytes, order, f64::from),
+        Number::Float64 => numbers!(f64, bytes, order, |v| v),
+    })
+}
+
+/// The values of an array of whole numbers, those beyond an `i64` as its largest; it must have `expected` of them.
+pub(super) fn integers(
+    source: &Source,
+    document: &Document,
+    array: &DataArray,
+    expected: u64,
+) -> Result<Vec<i64>, IngestError> {
+    if matches!(array.number, Number::Float32 | Number::Float64) {
+        let what = "an array of whole numbers of type";
+        return Err(source.unsupported(Place::Byte(array.at), what, "Float32 or Float64", "write it as Int64"));
+    }
+    if let Storage::Text(text) = array.storage {
+        return parse(source, array, text, expected);
+    }
+    let (bytes, order) = (Binary { source, document, array }.decode(expected)?, document.order);
+    Ok(match array.number {
+        Number::Int8 => numbers!(i8, bytes, order, i64::from),
+        Number::UInt8 => numbers!(u8, bytes, order, i64::from),
+        Number::Int16 => numbers!(i16, bytes, order, i64::from),
+        Number::UInt16 => numbers!(u16, bytes, order, i64::from),
+        Number::Int32 => numbers!(i32, bytes, order, i64::from),
+        Number::UInt32 => numbers!(u32, bytes, order, i64::from),
+        Number::Int64 => numbers!(i64, bytes, order, |v| v),
+        Number::UInt64 => numbers!(u64, bytes, order, |v| i64::try_from(v).unwrap_or(i64::MAX)),
+        Number::Float32 | Number::Float64 => Vec::new(),
+    })
+}
+
+/// Numbers in words.
+fn parse<T: FromStr>(source: &Source, array: &DataArray, text: &str, expected: u64) -> Result<Vec<T>, IngestError> {
+    let place = Place::Byte(array.at);
+    // A number takes two characters at least, its separator counted.
+    let mut values = Vec::with_capacity(expected.min(text.len() as u64 / 2 + 1) as usize);
+    for word in text.split_ascii_whitespace() {
+        if values.len() as u64 == expected {
+            let what = format!("{} of {expected} values", label(array));
+            return Err(source.malformed(place, what, "more", "the number of values must fit the mesh"));
+        }
+        values.push(word.parse().map_err(|_| {
+            source.malformed(place, format!("value {} of {}", values.len(), label(array)), word, "write a number")
+        })?);
+    }
+    if (values.len() as u64) < expected {
+        let what = format!("{} of {expected} values", label(array));
+        return Err(source.malformed(place, what, values.len(), "the number of values must fit the mesh"));
+    }
+    Ok(values)
+}
+
+fn label(array: &DataArray) -> String {
+    array.name.as_ref().map_or("an array without a name".into(), |name| format!("array \"{}\"", excerpt(name)))
+}
+
+/// An array in binary: a header of lengths, then bytes, compressed or not.
+struct Binary<'a> {
+    source: &'a Source,
+    document: &'a Document<'a>,
+    array: &'a DataArray<'a>,
+}
+
+/// Bytes as they are, or in base64.
+enum Stream<'a> {
+    Raw(&'a [u8]),
+    Base64(Decoder<'a>),
+}
+
+impl<'a> Stream<'a> {
+    /// The next `count` bytes, or as many as there are.
+    fn read(&mut self, count: usize) -> Cow<'a, [u8]> {
+        match self {
+            Stream::Raw(bytes) => {
+                let (taken, rest) = bytes.split_at(count.min(bytes.len()));
+                *bytes = rest;
+                Cow::Borrowed(taken)
+            }
+            Stream::Base64(decoder) => Cow::Owned(decoder.read(count)),
+        }
+    }
+}
+
+impl<'a> Binary<'a> {
+    fn decode(&self, expected: u64) -> Result<Cow<'a, [u8]>, IngestError> {
+        let bytes = expected.saturating_mul(self.array.number.size());
+        if self.document.compressed { self.inflate(bytes) } else { self.copy(bytes) }
+    }
+
+    /// The array's data, and their place in the file.
+    fn stream(&self) -> Result<(Stream<'a>, u64), IngestError> {
+        let offset = match self.array.storage {
+            Storage::Text(text) | Storage::Base64(text) => {
+                return Ok((Stream::Base64(Decoder::new(text.as_bytes())), self.array.at));
+            }
+            Storage::Appended(offset) => offset,
+        };
+        let Some(appended) = &self.document.appended else {
+            return Err(self.malformed("no <AppendedData>, to which it refers", offset, "write the file again"));
+        };
+        let at = appended.at.saturating_add(offset);
+        let data = usize::try_from(offset).ok().and_then(|offset| appended.bytes.get(offset..));
+        let data = data.ok_or_else(|| self.truncated(at, 1, 0))?;
+        let stream = if appended.base64 { Stream::Base64(Decoder::new(data)) } else { Stream::Raw(data) };
+        Ok((stream, at))
+    }
+
+    /// Data that are not compressed: one length, then the bytes, in one stream.
+    fn copy(&self, expected: u64) -> Result<Cow<'a, [u8]>, IngestError> {
+        let width = self.width();
+        let (mut probe, at) = self.stream()?;
+        let header = self.words(&probe.read(width));
+        let &[declared] = header.as_slice() else { return Err(self.truncated(at, width as u64, 0)) };
+        self.agree(declared, expected)?;
+        let (mut stream, _) = self.stream()?;
+        let needed = expected.saturating_add(width as u64);
+        let all = stream.read(usize::try_from(needed).unwrap_or(usize::MAX));
+        if (all.len() as u64) < needed {
+            return Err(self.truncated(at, needed, all.len() as u64));
+        }
+        self.take(needed)?;
+        Ok(match all {
+            Cow::Borrowed(all) => Cow::Borrowed(&all[width..]),
+            Cow::Owned(mut all) => {
+                all.drain(..width);
+                Cow::Owned(all)
+            }
+        })
+    }
+
+    /// Compressed data: the number of blocks, their size, the last one's if it is smaller, the compressed size of
+    /// each; then, in a stream of its own, the blocks.
+    fn inflate(&self, expected: u64) -> Result<Cow<'a, [u8]>, IngestError> {
+        let width = self.width();
+        let (mut probe, at) = self.stream()?;
+        let header = self.words(&probe.read(3 * width));
+        let &[blocks, size, last] = header.as_slice() else {
+            return Err(self.truncated(at, 3 * width as u64, (header.len() * width) as u64));
+        };
+        let partial = u64::from(last > 0 && blocks > 0);
+        let declared = (blocks - partial).saturating_mul(size).saturating_add(last * partial);
+        self.agree(declared, expected)?;
+
+        let (mut stream, _) = self.stream()?;
+        let needed = blocks.saturating_add(3).saturating_mul(width as u64);
+        let header = self.words(&stream.read(usize::try_from(needed).unwrap_or(usize::MAX)));
+        let compressed = header.get(3..).unwrap_or_default();
+        if (compressed.len() as u64) < blocks {
+            return Err(self.truncated(at, needed, (header.len() * width) as u64));
+        }
+        let total = compressed.iter().fold(0u64, |sum, &n| sum.saturating_add(n));
+        let data = stream.read(usize::try_from(total).unwrap_or(usize::MAX));
+        if (data.len() as u64) < total {
+            return Err(self.truncated(at, needed.saturating_add(total), needed + data.len() as u64));
+        }
+        self.take(needed + total)?;
+        if expected > total.saturating_mul(MOST_GROWTH) {
+            let what = format!("{} cannot become {expected} bytes", label(self.array));
+            return Err(self.malformed(what, format!("{total} compressed bytes"), "write the file again"));
+        }
+        let mut bytes = Vec::new();
+        if usize::try_from(expected).map_or(true, |n| bytes.try_reserve_exact(n).is_err()) {
+            let what = format!("no memory for {}", label(self.array));
+            return Err(self.malformed(what, format!("{expected} bytes"), "free memory, or split the data set"));
+        }
+        let mut rest = data.as_ref();
+        for (b, &length) in compressed.iter().enumerate() {
+            let (block, after) = rest.split_at((length as usize).min(rest.len()));
+            rest = after;
+            let size = if partial == 1 && b as u64 + 1 == blocks { last } else { size };
+            let start = bytes.len() as u64;
+            // One byte more than there should be, so that the end of the stream and its checksum are reached.
+            let read = ZlibDecoder::new(block).take(size.saturating_add(1)).read_to_end(&mut bytes);
+            let found = match read {
+                Ok(_) if bytes.len() as u64 - start == size => continue,
+                Ok(n) => format!("{n} bytes or more"),
+                Err(error) => error.to_string(),
+            };
+            let what = format!("block {b} of {} must inflate to {size} bytes", label(self.array));
+            return Err(self.malformed(what, found, "copy or write the file again"));
+        }
+        Ok(Cow::Owned(bytes))
+    }
+
+    /// Counts appended data that are taken, so that no file asks for more memory than its length warrants.
+    fn take(&self, bytes: u64) -> Result<(), IngestError> {
+        let (Storage::Appended(offset), Some(appended)) = (self.array.storage, &self.document.appended) else {
+            return Ok(());
+        };
+        appended.taken.set(appended.taken.get().saturating_add(bytes));
+        if appended.taken.get() <= appended.bytes.len() as u64 {
+            return Ok(());
+        }
+        let what = format!("{} and those before it share appended data", label(self.array));
+        Err(self.malformed(what, format!("offset {offset}"), "give each array its own"))
+    }
+
+    /// Bytes of one length in a header.
+    fn width(&self) -> usize {
+        if self.document.wide { 8 } else { 4 }
+    }
+
+    fn words(&self, bytes: &[u8]) -> Vec<u64> {
+        let order: ByteOrder = self.document.order;
+        if self.document.wide { numbers!(u64, bytes, order, |v| v) } else { numbers!(u32, bytes, order, u64::from) }
+    }
+
+    fn agree(&self, declared: u64, expected: u64) -> Result<(), IngestError> {
+        if declared == expected {
+            return Ok(());
+        }
+        let what = format!(
+            "{} has the wrong length: the numbers of points, cells and components ask for {expected} bytes",
+            label(self.array)
+        );
+        Err(self.malformed(what, format!("{declared} bytes"), "mend the header, or write the file again"))
+    }
+
+    fn truncated(&self, offset: u64, needed: u64, found: u64) -> IngestError {
+        IngestError::Truncated { path: self.source.path.clone(), what: label(self.array), offset, needed, found }
+    }
+
+    fn malformed(&self, what: impl Into<String>, found: impl ToString, remedy: &str) -> IngestError {
+        self.source.malformed(Place::Byte(self.array.at), what, found, remedy)
+    }
+}

@@ -1,0 +1,212 @@
+//! A tetrahedron as a ray sees it: the twin of shaders/lib/view.wgsl and shaders/lib/cell.wgsl, function by function.
+//!
+//! The shaders explain the method. What differs here: the orthographic switch is an argument, and a segment also says
+//! how deep it lies, for sorting.
+
+use glam::{Vec2, Vec3, Vec4};
+
+use crate::device_view::DeviceView;
+
+/// A vertex in eye space and in pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex {
+    pub(crate) frame: Vec3,
+    pub(crate) eye: Vec3,
+    pub(crate) pixel: Vec2,
+}
+
+/// What the functions of this module need to know of the view.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lens {
+    pub(crate) view: DeviceView,
+    pub(crate) orthographic: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Hidden,
+    Plain,
+    Deep,
+}
+
+/// The planes of the faces and the gradient of the scalar.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cell {
+    pub(crate) planes: [Vec4; 4],
+    pub(crate) gradient: Vec3,
+    pub(crate) kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reference {
+    origins: [Vec2; 2],
+    depth: f32,
+    scalar: f32,
+    w: [f32; 2],
+    s: [f32; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Segment {
+    pub(crate) s_front: f32,
+    pub(crate) s_back: f32,
+    pub(crate) length: f32,
+    /// Depth of the middle in device units.
+    pub(crate) depth: f32,
+}
+
+const DEEP_RATIO: f32 = 4.0;
+const STEEPEST: f32 = 1e20;
+
+impl Lens {
+    pub(crate) fn vertex(&self, position: Vec3) -> Vertex {
+        let view = &self.view;
+        let p = (position - DeviceView::axis(view.pivot_high)) - DeviceView::axis(view.pivot_low);
+        let rows = [view.right, view.down, view.forward];
+        let frame = Vec3::from(rows.map(|row| DeviceView::axis(row).dot(p)));
+        let eye = frame + Vec3::from(rows.map(|row| row[3]));
+        Vertex { frame, eye, pixel: self.pixel_of(eye) }
+    }
+
+    pub(crate) fn pixel_of(&self, eye: Vec3) -> Vec2 {
+        let scale = if self.orthographic { 1.0 } else { eye.z.max(self.view.near) };
+        eye.truncate() / (scale * self.view.pixel)
+    }
+
+    fn cell_kind(&self, z: [f32; 4]) -> Kind {
+        let (nearest, farthest) = bounds(z);
+        if farthest <= self.view.near {
+            Kind::Hidden
+        } else if !self.orthographic && (nearest < self.view.near || farthest > DEEP_RATIO * nearest) {
+            Kind::Deep
+        } else {
+            Kind::Plain
+        }
+    }
+
+    fn face_plane(&self, [a, b, c]: [&Vertex; 3], inward: f32, reference: &Vertex) -> Vec4 {
+        let n = (b.frame - a.frame).cross(c.frame - a.frame);
+        let (side, least, depth) = if self.orthographic {
+            (n.z, 1e-12 * (n.x.abs() + n.y.abs()), 1.0)
+        } else {
+            (n.dot(a.eye), 1e-12 * n.abs().dot(a.eye.abs()), reference.eye.z)
+        };
+        let divisor = side.abs().max(least).max(1e-30);
+        let toward = if side >= 0.0 { 1.0 } else { -1.0 };
+        let slope = n.truncate() * (depth * self.view.pixel * toward / divisor);
+        let offset = n.dot(reference.frame - a.frame) * toward / divisor;
+        let limit = |x: f32| x.clamp(-STEEPEST, STEEPEST);
+        Vec4::new(limit(slope.x), limit(slope.y), limit(offset), toward * inward)
+    }
+
+    pub(crate) fn project_cell(&self, v: &[Vertex; 4], s: [f32; 4], parity: f32) -> Cell {
+        let z = v.map(|vertex| vertex.eye.z);
+        let kind = self.cell_kind(z);
+        if kind == Kind::Hidden {
+            return Cell { planes: [Vec4::ZERO; 4], gradient: Vec3::ZERO, kind };
+        }
+        let reference = if kind == Kind::Deep { &v[farthest_vertex(z)] } else { &v[0] };
+        let mut planes = [
+            self.face_plane([&v[1], &v[2], &v[3]], -parity, reference),
+            self.face_plane([&v[0], &v[2], &v[3]], parity, reference),
+            self.face_plane([&v[0], &v[1], &v[3]], -parity, reference),
+            self.face_plane([&v[0], &v[1], &v[2]], parity, reference),
+        ];
+        if kind == Kind::Plain {
+            let step = v[0].frame.z - v[1].frame.z;
+            planes[0].z = if self.orthographic { step } else { step / v[1].eye.z };
+        }
+        let e: [Vec3; 3] = std::array::from_fn(|i| v[i + 1].frame - v[0].frame);
+        let volume = e[0].dot(e[1].cross(e[2]));
+        let inverse = (if volume >= 0.0 { 1.0 } else { -1.0 }) / volume.abs().max(1e-30);
+        let sum =
+            (s[1] - s[0]) * e[1].cross(e[2]) + (s[2] - s[0]) * e[2].cross(e[0]) + (s[3] - s[0]) * e[0].cross(e[1]);
+        let gradient = (sum * inverse).clamp(Vec3::splat(-STEEPEST), Vec3::splat(STEEPEST));
+        Cell { planes, gradient, kind }
+    }
+
+    pub(crate) fn cell_reference(&self, v: &[Vertex; 4], s: [f32; 4], kind: Kind) -> Reference {
+        let z = v.map(|vertex| vertex.eye.z);
+        let (nearest, farthest) = bounds(z);
+        let (index, other) = if kind == Kind::Deep { (farthest_vertex(z), farthest_vertex(z)) } else { (0, 1) };
+        let depth = z[index];
+        let w = [farthest, nearest.max(self.view.near)]
+            .map(|z| if self.orthographic { depth - z } else { (depth - z) / z });
+        let (low, high) = bounds(s);
+        Reference { origins: [v[index].pixel, v[other].pixel], depth, scalar: s[index], w, s: [low, high] }
+    }
+
+    /// The segment of the ray through `at`, in pixels from the picture's middle; `None` where it misses the cell.
+    #[inline]
+    pub(crate) fn cell_segment(&self, cell: &Cell, reference: &Reference, at: Vec2) -> Option<Segment> {
+        let from = reference.origins.map(|origin| at - origin);
+        let [mut back, mut front] = reference.w;
+        for (i, plane) in cell.planes.iter().enumerate() {
+            let from = from[usize::from(i == 0)];
+            let w = plane.x * from.x + plane.y * from.y + plane.z;
+            if plane.w > 0.0 {
+                front = front.min(w);
+            } else {
+                back = back.max(w);
+            }
+        }
+        // Also where either is NaN.
+        if front.partial_cmp(&back) != Some(std::cmp::Ordering::Greater) {
+            return None;
+        }
+        let across = from[0] * self.view.pixel;
+        let gradient = cell.gradient;
+        let in_plane = gradient.truncate().dot(across);
+        let (length, s, depth) = if self.orthographic {
+            let s = [front, back].map(|w| reference.scalar + in_plane - w * gradient.z);
+            (front - back, s, reference.depth - 0.5 * (front + back))
+        } else {
+            let direction = (at * self.view.pixel).extend(1.0);
+            let along = gradient.dot(direction);
+            let s = [front, back].map(|w| reference.scalar + reference.depth * (in_plane - w / (1.0 + w) * along));
+            let (near, far) = (reference.depth / (1.0 + front), reference.depth / (1.0 + back));
+            let length = direction.length() * reference.depth * (front - back) / ((1.0 + front) * (1.0 + back));
+            (length, s, 0.5 * (near + far))
+        };
+        let [s_front, s_back] = s.map(|s| s.clamp(reference.s[0], reference.s[1]));
+        Some(Segment { s_front, s_back, length, depth })
+    }
+
+    /// Pixel bounds of what is seen of a cell, from the picture's middle.
+    pub(crate) fn pixel_bounds(&self, v: &[Vertex; 4], kind: Kind) -> [Vec2; 2] {
+        let mut bounds = [Vec2::splat(1e30), Vec2::splat(-1e30)];
+        let mut reach = |p: Vec2| bounds = [bounds[0].min(p), bounds[1].max(p)];
+        if kind != Kind::Deep {
+            v.iter().for_each(|vertex| reach(vertex.pixel));
+            return bounds;
+        }
+        let near = self.view.near;
+        for i in 0..4 {
+            if v[i].eye.z >= near {
+                reach(v[i].pixel);
+            }
+            for j in 0..i {
+                let (a, b) = (v[i].eye, v[j].eye);
+                if (a.z < near) != (b.z < near) {
+                    let t = ((near - a.z) / (b.z - a.z)).clamp(0.0, 1.0);
+                    reach(self.pixel_of((a.truncate() + (b - a).truncate() * t).extend(near)));
+                }
+            }
+        }
+        bounds
+    }
+}
+
+fn farthest_vertex(z: [f32; 4]) -> usize {
+    let mut far = 0;
+    for i in 1..4 {
+        if z[i] > z[far] {
+            far = i;
+        }
+    }
+    far
+}
+
+fn bounds(x: [f32; 4]) -> (f32, f32) {
+    (x[0].min(x[1]).min(x[2].min(x[3])), x[0].max(x[1]).max(x[2].max(x[3])))
+}

@@ -1,0 +1,94 @@
+//! The mesh as devices have it: scaled, single precision, vertices in ascending order.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use tetlux_mesh::{Location, ScalarField, TetMesh};
+
+/// In the first vertex of a device cell: the ascending order of the vertices is negatively oriented.
+pub(crate) const NEGATIVE: u32 = 1 << 31;
+
+/// A mesh and one of its scalars, in device units.
+#[derive(Debug, Clone)]
+pub(crate) struct DeviceMesh {
+    /// Device units per world unit: a power of two, so that scaling is exact.
+    pub(crate) scale: f64,
+    /// Positions relative to the mesh's origin, and the normalised scalar (0 for cell data).
+    pub(crate) points: Vec<[f32; 4]>,
+    /// Vertices in ascending order, [`NEGATIVE`] in the first.
+    pub(crate) cells: Vec<[u32; 4]>,
+    /// The normalised scalar of each cell; empty for point data.
+    pub(crate) cell_scalars: Vec<f32>,
+    /// Bounding box in device units.
+    pub(crate) bounds: [DVec3; 2],
+}
+
+impl DeviceMesh {
+    /// Scalars are mapped from the field's range to [0, 1]; missing ones become 0 (the plan leaves their cells out).
+    pub(crate) fn new(mesh: &TetMesh, scalar: &ScalarField) -> DeviceMesh {
+        let bounds = mesh.local_bounds();
+        let scale = unit_scale((bounds[1] - bounds[0]).max_element());
+        let [low, high] = scalar.range;
+        let width = if high > low { high - low } else { 1.0 };
+        let normalise = |s: f64| if s.is_finite() { ((s - low) / width).clamp(0.0, 1.0) as f32 } else { 0.0 };
+        let at_points = scalar.location == Location::Point;
+        let points = mesh
+            .points()
+            .par_iter()
+            .enumerate()
+            .map(|(i, p)| {
+                let [x, y, z] = (p.as_dvec3() * scale).as_vec3().to_array();
+                [x, y, z, if at_points { normalise(scalar.values[i]) } else { 0.0 }]
+            })
+            .collect();
+        let cell_scalars = if at_points { Vec::new() } else { scalar.values.iter().map(|&s| normalise(s)).collect() };
+        let cells = mesh.cells().par_iter().map(|&cell| ascending(cell)).collect();
+        DeviceMesh { scale, points, cells, cell_scalars, bounds: bounds.map(|corner| corner * scale) }
+    }
+}
+
+/// The power of two that brings a width into [1, 2).
+fn unit_scale(width: f64) -> f64 {
+    if width > 0.0 { (-width.log2().floor()).exp2() } else { 1.0 }
+}
+
+/// The vertices of a positively oriented cell in ascending order, marked if that takes an odd permutation.
+fn ascending(mut cell: [u32; 4]) -> [u32; 4] {
+    let mut odd = false;
+    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+        if cell[i] > cell[j] {
+            cell.swap(i, j);
+            odd = !odd;
+        }
+    }
+    // Assembled meshes have fewer than 2^30 points.
+    cell[0] |= if odd { NEGATIVE } else { 0 };
+    cell
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_permutation_is_sorted_with_its_parity() {
+        for code in 0..256usize {
+            let cell: [usize; 4] = std::array::from_fn(|i| (code >> (2 * i)) & 3);
+            let inversions =
+                (0..4).flat_map(|i| (0..i).map(move |j| (j, i))).filter(|&(j, i)| cell[j] > cell[i]).count();
+            if (0..4).all(|v| cell.contains(&v)) {
+                let sorted = ascending(cell.map(|v| v as u32 + 7));
+                assert_eq!(sorted.map(|v| v & !NEGATIVE), [7, 8, 9, 10]);
+                assert_eq!(sorted[0] & NEGATIVE != 0, inversions % 2 == 1, "{cell:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn scales_are_powers_of_two() {
+        for width in [1e-12, 0.3, 1.0, 1.5, 1e12] {
+            let scaled = width * unit_scale(width);
+            assert!((1.0..2.0).contains(&scaled), "{width} becomes {scaled}");
+            assert_eq!(unit_scale(width).log2().fract(), 0.0);
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Why a picture could not be made.
+
+use tetlux_image::ImageError;
+use tetlux_shaders::ComposeError;
+
+/// Why a picture could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The plan wants a graphics adapter and there is none.
+    #[error("there is no graphics adapter: use the CPU back end, or install a driver")]
+    NoAdapter,
+    /// The adapter gave no device.
+    #[error("{adapter} could not be opened: {reason}")]
+    Open {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver said.
+        reason: String,
+    },
+    /// Something does not fit the device.
+    #[error("{what} needs {needed} {unit}, but {adapter} allows {limit}: use the CPU back end")]
+    Limit {
+        /// What is too large.
+        what: &'static str,
+        /// How much it needs.
+        needed: u64,
+        /// "bytes" or "pixels".
+        unit: &'static str,
+        /// How much there is.
+        limit: u64,
+        /// The adapter's name.
+        adapter: String,
+    },
+    /// The driver reported an error: out of memory, or a lost device.
+    #[error("{adapter} failed: {reason}")]
+    Device {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver said.
+        reason: String,
+    },
+    /// A shader could not be put together.
+    #[error(transparent)]
+    Shader(#[from] ComposeError),
+    /// The picture could not be made.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+}

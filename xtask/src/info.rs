@@ -1,0 +1,151 @@
+//! `cargo xtask info`
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use serde::Serialize;
+use tetlux_ingest::{ReadOptions, Split, read};
+use tetlux_mesh::Component;
+
+use crate::progress;
+use crate::report::write_json;
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  cargo xtask info mesh.vtu
+  cargo xtask info bluntfinxyz.bin --solution bluntfinq.bin --split 5";
+
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Mesh file: VTU, or a PLOT3D grid
+    file: PathBuf,
+    /// PLOT3D solution (q file) that belongs to the grid
+    #[arg(long, value_name = "FILE")]
+    solution: Option<PathBuf>,
+    /// Tetrahedra a hexahedron becomes: 5 or 6
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(5..=6))]
+    split: u32,
+    /// Write every figure as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+#[derive(Serialize)]
+struct Info {
+    file: String,
+    cells_by_type: Vec<(&'static str, usize)>,
+    notes: Vec<String>,
+    points: usize,
+    tetrahedra: usize,
+    bounds: [[f64; 3]; 2],
+    edge_lengths: [f64; 2],
+    edge_ratio: f64,
+    mean_edge_length: f64,
+    volume: f64,
+    components: usize,
+    boundary_faces: usize,
+    faults: Vec<String>,
+    fields: Vec<FieldInfo>,
+}
+
+#[derive(Serialize)]
+struct FieldInfo {
+    name: String,
+    location: &'static str,
+    components: usize,
+    /// Of the magnitude and, for vectors, of each component; none where there is no finite value.
+    ranges: Vec<Option<[f64; 2]>>,
+    not_finite: usize,
+}
+
+pub(crate) fn run(args: &Args) -> Result<()> {
+    let split = if args.split == 5 { Split::Five } else { Split::Six };
+    let options = ReadOptions { solution: args.solution.clone() };
+    let info = progress::during("reading", || -> Result<Info> {
+        let mixed = read(&args.file, &options)?;
+        let (cells_by_type, notes) = (mixed.cell_counts(), mixed.notes.clone());
+        let mesh = mixed.tetrahedralize(split)?;
+        let report = mesh.validate();
+        let fields = mesh.fields().iter().map(|field| {
+            let components = (0..field.components).map(Component::Index).filter(|_| field.components > 1);
+            FieldInfo {
+                name: field.name.clone(),
+                location: field.location.plural(),
+                components: field.components,
+                ranges: std::iter::once(Component::Magnitude).chain(components).map(|c| field.range(c)).collect(),
+                not_finite: field.values.iter().filter(|v| !v.is_finite()).count(),
+            }
+        });
+        Ok(Info {
+            file: args.file.display().to_string(),
+            cells_by_type,
+            notes,
+            points: report.points,
+            tetrahedra: report.cells,
+            bounds: report.bounds,
+            edge_lengths: report.edge_lengths,
+            edge_ratio: report.edge_lengths[1] / report.edge_lengths[0],
+            mean_edge_length: report.mean_edge_length,
+            volume: report.volume,
+            components: report.components,
+            boundary_faces: report.boundary_faces,
+            faults: report.faults(),
+            fields: fields.collect(),
+        })
+    })?;
+    info.print();
+    if let Some(path) = &args.json {
+        write_json(path, &info)?;
+    }
+    Ok(())
+}
+
+impl Info {
+    fn print(&self) {
+        let row = |name: &str, value: String| println!("{name:<16} {value}");
+        println!("{}", self.file);
+        for (name, count) in &self.cells_by_type {
+            row("in the file", format!("{count} {name}"));
+        }
+        row("points", self.points.to_string());
+        row("tetrahedra", self.tetrahedra.to_string());
+        let [lo, hi] = self.bounds;
+        row("bounds", format!("({}, {}, {}) to ({}, {}, {})", lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]));
+        let [shortest, longest] = self.edge_lengths;
+        row(
+            "edges",
+            format!("{shortest:.3e} to {longest:.3e}, ratio {:.4}, mean {:.4}", self.edge_ratio, self.mean_edge_length),
+        );
+        row("volume", format!("{:.6}", self.volume));
+        row("components", self.components.to_string());
+        row("boundary faces", self.boundary_faces.to_string());
+        for field in &self.fields {
+            let range = |r: &Option<[f64; 2]>| r.map_or("no finite value".into(), |[lo, hi]| format!("{lo} to {hi}"));
+            let missing =
+                if field.not_finite > 0 { format!(", {} not finite", field.not_finite) } else { String::new() };
+            row(
+                "field",
+                format!(
+                    "\"{}\", {} component{} on {}: {}{missing}",
+                    field.name,
+                    field.components,
+                    if field.components == 1 { "" } else { "s, magnitude" },
+                    field.location,
+                    range(&field.ranges[0])
+                ),
+            );
+            for (i, component) in field.ranges[1..].iter().enumerate() {
+                row("", format!("  component {i}: {}", range(component)));
+            }
+        }
+        for note in &self.notes {
+            row("note", note.clone());
+        }
+        if self.faults.is_empty() {
+            row("faults", "none".into());
+        }
+        for fault in &self.faults {
+            row("fault", fault.clone());
+        }
+    }
+}

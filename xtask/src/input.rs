@@ -1,0 +1,173 @@
+//! Scene, mesh and flags, as `render` and `compare` take them.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use tetlux_ingest::{ReadOptions, Split, TetMesh, read_tet_mesh};
+use tetlux_mesh::procedural;
+use tetlux_scene::{Backend, Integrator, Order, Projection, Scene, SceneFile};
+
+use crate::progress;
+
+/// Flags override the scene file.
+#[derive(Args, Default)]
+#[command(next_help_heading = "Scene (flags override the scene file)")]
+pub(crate) struct SceneArgs {
+    /// Mesh file: VTU, or a PLOT3D grid
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mesh: Option<PathBuf>,
+    /// PLOT3D solution (q file) that belongs to the grid
+    #[arg(long, value_name = "FILE")]
+    pub(crate) solution: Option<PathBuf>,
+    /// Tetrahedra a hexahedron becomes: 5 or 6
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(5..=6))]
+    pub(crate) split: Option<u32>,
+    /// Field to show
+    #[arg(long, value_name = "NAME")]
+    pub(crate) field: Option<String>,
+    /// Component of a vector field, from 0; default its magnitude
+    #[arg(long, value_name = "I")]
+    pub(crate) component: Option<usize>,
+    /// Which of the scene's cameras, from 0
+    #[arg(long, value_name = "I", default_value_t = 0)]
+    pub(crate) camera: usize,
+    /// Look along parallel rays: half the picture's height in world units
+    #[arg(long, value_name = "LENGTH")]
+    pub(crate) parallel_scale: Option<f64>,
+    /// Picture size in pixels, such as 800x800
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// World length over which opacity 1 is optical depth 1
+    #[arg(long, value_name = "LENGTH")]
+    pub(crate) unit_distance: Option<f64>,
+    /// auto, gpu or cpu
+    #[arg(long, value_name = "NAME")]
+    pub(crate) backend: Option<Backend>,
+    /// auto, none, centroid or pixel
+    #[arg(long, value_name = "NAME")]
+    pub(crate) order: Option<Order>,
+    /// direct or average
+    #[arg(long, value_name = "NAME")]
+    pub(crate) integrator: Option<Integrator>,
+    /// Largest error of a pixel that `compare` accepts, linear
+    #[arg(long, value_name = "E")]
+    pub(crate) max_error: Option<f64>,
+    /// Write composited values to the PNG as they are, as ParaView does
+    #[arg(long)]
+    pub(crate) display_space: bool,
+}
+
+/// What is rendered.
+pub(crate) struct Input {
+    /// Short name, for output files.
+    pub(crate) name: String,
+    pub(crate) title: String,
+    pub(crate) mesh: TetMesh,
+    pub(crate) scene: Scene,
+    pub(crate) display_space: bool,
+}
+
+/// The scene that is rendered where none is named.
+const BUILT_IN: &str = include_str!("../../scenes/wing.toml");
+/// Tetrahedra of its mesh.
+const BUILT_IN_CELLS: usize = 100_000;
+const BUILT_IN_SEED: u64 = 1;
+
+impl SceneArgs {
+    /// Reads the scene (the built-in one without a path) and its mesh.
+    pub(crate) fn load(&self, scene: Option<&Path>) -> Result<Input> {
+        let built_in = scene.is_none() && self.mesh.is_none();
+        let (name, mut file) = match scene {
+            Some(path) => (stem(path), SceneFile::read(path)?),
+            None => ("wing".to_string(), SceneFile::parse("the built-in scene", BUILT_IN)?),
+        };
+        if !built_in && scene.is_none() {
+            bail!(
+                "a mesh needs a scene that says how to show it: cargo xtask render SCENE.toml --mesh {}",
+                self.mesh.as_deref().unwrap_or(Path::new("FILE")).display()
+            );
+        }
+        self.override_scene(&mut file)?;
+        let mesh = if built_in {
+            progress::during("making the built-in mesh", || {
+                let wing = procedural::wing(BUILT_IN_SEED, BUILT_IN_CELLS);
+                TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])
+            })?
+        } else {
+            let path = file.mesh.clone().with_context(|| {
+                format!(
+                    "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" under [mesh]",
+                    file.name
+                )
+            })?;
+            let options = ReadOptions { solution: file.solution.clone() };
+            let split = if file.split == Some(5) { Split::Five } else { Split::Six };
+            progress::during("reading the mesh", || read_tet_mesh(&path, &options, split))?
+        };
+        let mut scene = file.scene(&mesh, self.camera)?;
+        if let Some(parallel_scale) = self.parallel_scale {
+            scene.camera.projection = Projection::Orthographic { parallel_scale };
+        }
+        Ok(Input { name, title: file.title, mesh, scene, display_space: file.display_space })
+    }
+
+    fn override_scene(&self, file: &mut SceneFile) -> Result<()> {
+        for (flag, value) in [
+            ("--unit-distance", self.unit_distance),
+            ("--max-error", self.max_error),
+            ("--parallel-scale", self.parallel_scale),
+        ] {
+            if let Some(value) = value
+                && !(value > 0.0 && value.is_finite())
+            {
+                bail!("{flag}: {value} must be positive and finite");
+            }
+        }
+        if self.mesh.is_some() {
+            // A solution belongs to its grid.
+            (file.mesh, file.solution) = (self.mesh.clone(), None);
+        }
+        file.solution = self.solution.clone().or(file.solution.take());
+        file.split = self.split.or(file.split);
+        if self.field.is_some() {
+            (file.field, file.component) = (self.field.clone(), None);
+        }
+        file.component = self.component.or(file.component);
+        file.size = self.size.unwrap_or(file.size);
+        file.unit_distance = self.unit_distance.or(file.unit_distance);
+        file.display_space |= self.display_space;
+        let method = &mut file.method;
+        method.backend = self.backend.unwrap_or(method.backend);
+        method.order = self.order.unwrap_or(method.order);
+        method.integrator = self.integrator.unwrap_or(method.integrator);
+        method.max_error = self.max_error.unwrap_or(method.max_error);
+        Ok(())
+    }
+}
+
+/// The name of a file without its extension.
+pub(crate) fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "picture".into(), |s| s.to_string_lossy().into_owned())
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    match sides {
+        Some(size) if size.iter().all(|n| (1..=tetlux_image::MAX_SIDE).contains(n)) => Ok(size),
+        _ => Err(format!("\"{text}\" is not a size such as 800x800, each side 1 to {}", tetlux_image::MAX_SIDE)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(parse_size("640x480"), Ok([640, 480]));
+        for bad in ["640", "0x5", "5x0", "x", "axb", "99999x1", "-1x2"] {
+            assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+}

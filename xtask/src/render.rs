@@ -1,0 +1,73 @@
+//! `cargo xtask render`
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use tetlux_image::{Encoding, Image, write_exr, write_png};
+use tetlux_render::{Frame, Renderer, Stages};
+use tetlux_scene::Plan;
+
+use crate::input::{Input, SceneArgs};
+use crate::progress;
+use crate::report::{Report, create_folder};
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  cargo xtask render
+  cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfin_tets.vtu
+  cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfinxyz.bin --solution bluntfinq.bin --field Density
+  cargo xtask render scene.toml --size 1600x900 --backend cpu --order pixel --output pictures/fin.png --json fin.json";
+
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Scene file (TOML); none: the built-in scene
+    scene: Option<PathBuf>,
+    #[command(flatten)]
+    input: SceneArgs,
+    /// PNG to write; the EXR goes beside it [default: out/SCENE.png]
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Write every figure as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<()> {
+    let input = args.input.load(args.scene.as_deref())?;
+    let renderer = Renderer::new();
+    let adapter = renderer.device().map(|d| d.name.clone());
+    let (plan, frame) = render(&input, &renderer, |plan| {
+        Report::new(&input, plan, adapter.as_deref(), &[]).print_plan(plan);
+    })?;
+    let mut report = Report::new(&input, &plan, adapter.as_deref(), &frame.stages);
+    report.print_stages();
+    let png = args.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name).with_extension("png"));
+    report.files = write_picture(&input, &frame.image, &png)?;
+    println!("{}", report.files.join("\n"));
+    if let Some(path) = &args.json {
+        report.write(path)?;
+    }
+    Ok(())
+}
+
+/// Plans and renders; `announce` is told the plan before anything is drawn.
+pub(crate) fn render(input: &Input, renderer: &Renderer, announce: impl FnOnce(&Plan)) -> Result<(Plan, Frame)> {
+    let mut stages = Stages::default();
+    let plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, renderer.device()))?;
+    announce(&plan);
+    let mut frame = progress::during("rendering", || renderer.render(&input.scene, &input.mesh, &plan))?;
+    let mut all = stages.into_vec();
+    all.append(&mut frame.stages);
+    frame.stages = all;
+    Ok((plan, frame))
+}
+
+/// Writes the PNG over the background and the EXR without it; gives the names of the files.
+pub(crate) fn write_picture(input: &Input, image: &Image, png: &Path) -> Result<Vec<String>> {
+    create_folder(png)?;
+    let exr = png.with_extension("exr");
+    let encoding = if input.display_space { Encoding::Display } else { Encoding::Srgb };
+    write_exr(image, &exr, None)?;
+    write_png(&image.over(input.scene.background), png, encoding)?;
+    Ok(vec![png.display().to_string(), exr.display().to_string()])
+}

@@ -1,0 +1,139 @@
+//! What a picture took and how wrong it is, for people and for programs.
+
+use std::path::Path;
+
+use anyhow::Result;
+use serde::Serialize;
+use tetlux_image::{Metrics, write_atomically};
+use tetlux_render::Stage;
+use tetlux_scene::Plan;
+
+use crate::input::Input;
+
+/// Everything that `render` and `compare` print, as JSON.
+#[derive(Serialize)]
+pub(crate) struct Report<'a> {
+    scene: &'a str,
+    title: &'a str,
+    points: usize,
+    cells: usize,
+    cells_drawn: usize,
+    size: [u32; 2],
+    unit_distance: f64,
+    adapter: Option<&'a str>,
+    backend: String,
+    order: String,
+    integrator: String,
+    max_error: f64,
+    plan: Vec<(&'static str, &'a str)>,
+    warnings: &'a [String],
+    stages: Vec<StageReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) error: Option<Metrics>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) ordering_faults: Option<OrderingFaults>,
+    pub(crate) files: Vec<String>,
+}
+
+/// Pixels over the budget that come right when their segments are sorted.
+#[derive(Serialize, Clone, Copy)]
+pub(crate) struct OrderingFaults {
+    /// Pixels over the budget.
+    pub(crate) pixels_over: u64,
+    /// Those among them that sorting mends.
+    pub(crate) mended_by_sorting: u64,
+    /// Largest error that is left after sorting.
+    pub(crate) max_after_sorting: f64,
+}
+
+#[derive(Serialize)]
+struct StageReport {
+    name: &'static str,
+    wall_seconds: f64,
+    cpu_seconds: Option<f64>,
+}
+
+impl<'a> Report<'a> {
+    pub(crate) fn new(input: &'a Input, plan: &'a Plan, adapter: Option<&'a str>, stages: &[Stage]) -> Report<'a> {
+        Report {
+            scene: &input.name,
+            title: &input.title,
+            points: input.mesh.points().len(),
+            cells: input.mesh.cells().len(),
+            cells_drawn: plan.cells.len(),
+            size: plan.view.size,
+            unit_distance: input.scene.unit_distance,
+            adapter,
+            backend: plan.backend.to_string(),
+            order: plan.order.to_string(),
+            integrator: plan.integrator.to_string(),
+            max_error: input.scene.method.max_error,
+            plan: plan.reasons.iter().map(|(what, why)| (*what, why.as_str())).collect(),
+            warnings: &plan.warnings,
+            stages: stages
+                .iter()
+                .map(|s| StageReport { name: s.name, wall_seconds: s.wall, cpu_seconds: s.cpu })
+                .collect(),
+            error: None,
+            ordering_faults: None,
+            files: Vec::new(),
+        }
+    }
+
+    /// Prints what is rendered, how, and why so.
+    pub(crate) fn print_plan(&self, plan: &Plan) {
+        let title = if self.title.is_empty() { self.scene } else { self.title };
+        println!("{title}: {} points, {} cells", self.points, self.cells);
+        println!("adapter: {}", self.adapter.unwrap_or("none; rendering on the CPU"));
+        println!("plan ({} x {}, unit distance {:.4}):", self.size[0], self.size[1], self.unit_distance);
+        print!("{plan}");
+        for warning in self.warnings {
+            println!("warning: {warning}");
+        }
+    }
+
+    pub(crate) fn print_stages(&self) {
+        println!("{:<14} {:>9} {:>9}", "stage", "wall ms", "CPU ms");
+        let row = |name: &str, wall: f64, cpu: Option<f64>| {
+            let cpu = cpu.map_or("-".to_string(), |s| format!("{:.1}", s * 1e3));
+            println!("{name:<14} {:>9.1} {cpu:>9}", wall * 1e3);
+        };
+        for stage in &self.stages {
+            row(stage.name, stage.wall_seconds, stage.cpu_seconds);
+        }
+        let cpu = self.stages.iter().map(|s| s.cpu_seconds).sum();
+        row("total", self.stages.iter().map(|s| s.wall_seconds).sum(), cpu);
+    }
+
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
+        write_json(path, self)
+    }
+}
+
+/// Prints the figures of a comparison.
+pub(crate) fn print_metrics(metrics: &Metrics, budget: f64) {
+    println!("error over {} covered pixels, linear, worst channel:", metrics.covered);
+    println!("  max    {:.3e} at pixel ({}, {})", metrics.max, metrics.worst[0], metrics.worst[1]);
+    println!("  mean   {:.3e}", metrics.mean);
+    println!("  p99.9  {:.3e}", metrics.p999);
+    println!("  PSNR   {:.1} dB", metrics.psnr);
+    println!("  over {budget:.1e}: {} pixels; not finite: {} pixels", metrics.over, metrics.non_finite);
+}
+
+pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(value)?;
+    create_folder(path)?;
+    write_atomically(path, |file| file.write_all(text.as_bytes()))?;
+    Ok(())
+}
+
+/// Makes the folder that a file is to be in.
+pub(crate) fn create_folder(path: &Path) -> Result<()> {
+    use anyhow::Context;
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => {
+            std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))
+        }
+        _ => Ok(()),
+    }
+}
