@@ -23,8 +23,13 @@ struct Piece {
 
 // The last piece that begins at or below s.
 fn piece_at(s: f32) -> u32 {
-    var low = 0u;
-    var high = arrayLength(&pieces);
+    return piece_among(vec2<u32>(0u, arrayLength(&pieces) - 1u), s);
+}
+
+// The same, known to be among the pieces from range.x to range.y.
+fn piece_among(range: vec2<u32>, s: f32) -> u32 {
+    var low = range.x;
+    var high = range.y + 1u;
     while high - low > 1u {
         let middle = (low + high) / 2u;
         if pieces[middle].s.x <= s {
@@ -48,10 +53,11 @@ fn weights(a: f32, b: f32) -> vec3<f32> {
     return weights_direct(a, b);
 }
 
-// Premultiplied colour and alpha of a segment with scalars s_front and s_back, of a length in device units.
-fn integrate(s_front: f32, s_back: f32, length: f32) -> vec4<f32> {
+// Premultiplied colour and alpha of a segment with scalars s_front and s_back, of a length in device units. `range` are
+// the first and the last piece that its cell's scalars meet: for most cells one.
+fn integrate(range: vec2<u32>, s_front: f32, s_back: f32, length: f32) -> vec4<f32> {
     let rise = s_back - s_front;
-    var k = piece_at(s_front);
+    var k = piece_among(range, s_front);
     // Below this the scalar is constant, and dividing by it might overflow.
     if abs(rise) < 1e-20 {
         let c = classify(k, s_front);
@@ -61,7 +67,7 @@ fn integrate(s_front: f32, s_back: f32, length: f32) -> vec4<f32> {
     var color = vec3<f32>(0.0);
     var alpha = 0.0;
     var begin = 0.0;
-    for (var n = arrayLength(&pieces); n > 0u; n--) {
+    for (var n = range.x; n <= range.y; n++) {
         let bound = select(pieces[k].s.x, pieces[k].s.y, rise > 0.0);
         let end = clamp((bound - s_front) / rise, begin, 1.0);
         if end > begin {

@@ -3,7 +3,7 @@
 import package::lib::mesh::{corners};
 import package::lib::view::{Vertex, view, pixel_of, ORTHOGRAPHIC};
 import package::lib::cell::{Cell, Reference, HIDDEN, DEEP, cell_reference, cell_segment};
-import package::lib::transfer::{integrate};
+import package::lib::transfer::{piece_at, integrate};
 
 @group(1) @binding(1) var<storage, read> projected: array<Cell>;
 
@@ -18,6 +18,8 @@ struct Fragment {
     // w and scalar ranges.
     @location(6) @interpolate(flat) ranges: vec4<f32>,
     @location(7) @interpolate(flat) depth_scalar: vec2<f32>,
+    // The pieces of the transfer function that the cell's scalars meet.
+    @location(8) @interpolate(flat) pieces: vec2<u32>,
 }
 
 // Pixels by which the drawn rectangle exceeds the silhouette: well above a rasteriser's 1/256, so that every pixel
@@ -113,6 +115,7 @@ fn cover(@builtin(vertex_index) index: u32) -> Fragment {
     fragment.origins = reference.origins;
     fragment.ranges = vec4<f32>(reference.w, reference.s);
     fragment.depth_scalar = vec2<f32>(reference.depth, reference.scalar);
+    fragment.pieces = vec2<u32>(piece_at(reference.s.x), piece_at(reference.s.y));
     return fragment;
 }
 
@@ -131,5 +134,5 @@ fn shade(fragment: Fragment) -> @location(0) vec4<f32> {
     if !(segment.length > 0.0) {
         discard;
     }
-    return integrate(segment.s_front, segment.s_back, segment.length);
+    return integrate(fragment.pieces, segment.s_front, segment.s_back, segment.length);
 }

@@ -31,7 +31,7 @@ struct Layout {
 }
 
 /// Whether the dimensions in these bytes, in either byte order, ask for just their length.
-pub(crate) fn recognises(bytes: &[u8]) -> bool {
+pub(crate) fn recognizes(bytes: &[u8]) -> bool {
     layout(bytes).is_some()
 }
 

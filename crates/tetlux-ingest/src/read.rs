@@ -23,13 +23,13 @@ const PLOT3D_EXTENSIONS: [&str; 7] = ["xyz", "bin", "x", "p3d", "p3dbin", "g", "
 pub fn read(path: &Path, options: &ReadOptions) -> Result<MixedMesh, IngestError> {
     let source = Source::open(path)?;
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let mut mesh = if vtu::recognises(&source.bytes) {
+    let mut mesh = if vtu::recognizes(&source.bytes) {
         if let Some(solution) = &options.solution {
             let remedy = "leave the solution out: only PLOT3D grids have one";
             return Err(source.malformed(Place::File, "a solution for a VTU file", solution.display(), remedy));
         }
         vtu::read(source)?
-    } else if plot3d::recognises(&source.bytes)
+    } else if plot3d::recognizes(&source.bytes)
         || options.solution.is_some()
         || PLOT3D_EXTENSIONS.contains(&extension.as_str())
     {

@@ -103,9 +103,9 @@ fn spread(field: Field, origin: &[u32]) -> Field {
 fn first_coincident(points: &[DVec3]) -> Vec<u32> {
     let (low, high) =
         points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
-    let centre = low * 0.5 + high * 0.5;
+    let center = low * 0.5 + high * 0.5;
     // Adding zero turns -0 into +0, so that equal points are equal bit for bit.
-    let bits = |i: u32| ((points[i as usize] - centre).as_vec3() + glam::Vec3::ZERO).to_array().map(f32::to_bits);
+    let bits = |i: u32| ((points[i as usize] - center).as_vec3() + glam::Vec3::ZERO).to_array().map(f32::to_bits);
     let mut sorted: Vec<u32> = (0..points.len() as u32).collect();
     sorted.sort_unstable_by_key(|&i| (bits(i), i));
     let mut first = vec![0; points.len()];

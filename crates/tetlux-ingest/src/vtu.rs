@@ -15,7 +15,7 @@ use document::{DataArray, Document, Piece, Section};
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Whether these bytes begin as an XML file of VTK's, or any XML, does.
-pub(crate) fn recognises(bytes: &[u8]) -> bool {
+pub(crate) fn recognizes(bytes: &[u8]) -> bool {
     let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes).trim_ascii_start();
     text.starts_with(b"<?xml") || text.starts_with(b"<VTKFile") || text.starts_with(b"<!--")
 }

@@ -62,9 +62,14 @@ pub fn pieces(transfer: &TransferFunction, range: [f64; 2], extinction: f64) -> 
 }
 
 /// The last piece that begins at or below s.
-fn piece_at(pieces: &[Piece], s: f32) -> usize {
-    let mut low = 0;
-    let mut high = pieces.len();
+pub fn piece_at(pieces: &[Piece], s: f32) -> usize {
+    piece_among(pieces, [0, pieces.len() - 1], s)
+}
+
+/// The same, known to be among the pieces from `range[0]` to `range[1]`.
+fn piece_among(pieces: &[Piece], range: [usize; 2], s: f32) -> usize {
+    let mut low = range[0];
+    let mut high = range[1] + 1;
     while high - low > 1 {
         let middle = (low + high) / 2;
         if pieces[middle].s[0] <= s {
@@ -83,13 +88,22 @@ fn classify(piece: &Piece, s: f32) -> [f32; 4] {
 
 /// Premultiplied colour and alpha of a segment with scalars `s_front` and `s_back`, of a length in device units, on
 /// which the scalar is linear: cut at the control points, composited front to back.
-pub fn integrate(pieces: &[Piece], model: Weights, s_front: f32, s_back: f32, length: f32) -> [f32; 4] {
+///
+/// `range` are the first and the last piece that scalars of the segment's cell meet ([`piece_at`]): for most cells one.
+pub fn integrate(
+    pieces: &[Piece],
+    range: [usize; 2],
+    model: Weights,
+    s_front: f32,
+    s_back: f32,
+    length: f32,
+) -> [f32; 4] {
     let weights = |a, b| match model {
         Weights::Direct => weights_direct(a, b),
         Weights::Average => weights_average(a, b),
     };
     let rise = s_back - s_front;
-    let mut k = piece_at(pieces, s_front);
+    let mut k = piece_among(pieces, range, s_front);
     // Below this the scalar is constant, and dividing by it might overflow.
     if rise.abs() < 1e-20 {
         let c = classify(&pieces[k], s_front);
@@ -99,7 +113,7 @@ pub fn integrate(pieces: &[Piece], model: Weights, s_front: f32, s_back: f32, le
     let mut color = [0.0; 3];
     let mut alpha = 0.0;
     let mut begin = 0.0;
-    for _ in 0..pieces.len() {
+    for _ in range[0]..=range[1] {
         let bound = if rise > 0.0 { pieces[k].s[1] } else { pieces[k].s[0] };
         let end = ((bound - s_front) / rise).max(begin).min(1.0);
         if end > begin {
@@ -116,8 +130,8 @@ pub fn integrate(pieces: &[Piece], model: Weights, s_front: f32, s_back: f32, le
         if begin >= 1.0 {
             break;
         }
-        // The outer pieces are unbounded: a segment that has not ended has a next piece.
-        k = if rise > 0.0 { (k + 1).min(pieces.len() - 1) } else { k.saturating_sub(1) };
+        // A segment that has not ended has a next piece.
+        k = if rise > 0.0 { (k + 1).min(range[1]) } else { k.saturating_sub(1).max(range[0]) };
     }
     [color[0], color[1], color[2], alpha]
 }
@@ -145,12 +159,18 @@ mod tests {
     /// to 4, which a peak of slope 80 an optical depth of up to 10 turns into 4e-5.
     const TOLERANCE: f64 = 1e-4;
 
+    /// The range of pieces found as a renderer does for a cell.
+    fn whole(pieces: &[Piece], s_front: f32, s_back: f32, length: f32) -> [f32; 4] {
+        let range = [s_front.min(s_back), s_front.max(s_back)].map(|s| piece_at(pieces, s));
+        integrate(pieces, range, Weights::Direct, s_front, s_back, length)
+    }
+
     fn error(range: [f64; 2], s_front: f64, s_back: f64, length: f64) -> f64 {
         let transfer = lively();
         let exact = segment(&transfer, 1.0, s_front, s_back, length);
         let place = |s: f64| ((s - range[0]) / (range[1] - range[0])) as f32;
         let pieces = pieces(&transfer, range, 1.0);
-        let got = integrate(&pieces, Weights::Direct, place(s_front), place(s_back), length as f32);
+        let got = whole(&pieces, place(s_front), place(s_back), length as f32);
         let color = (0..3).map(|i| (f64::from(got[i]) - exact.color[i]).abs()).fold(0.0, f64::max);
         color.max((f64::from(got[3]) - exact.alpha).abs())
     }
@@ -166,7 +186,7 @@ mod tests {
         fn never_leaves_the_unit_interval_or_the_finite(front in proptest::num::f32::ANY, back in proptest::num::f32::ANY, length in proptest::num::f32::ANY) {
             let s = |x: f32| if x.is_finite() { x.clamp(0.0, 1.0) } else { 0.5 };
             let length = if length.is_finite() { length.abs() } else { 1.0 };
-            let result = integrate(&pieces(&lively(), [-1.5, 3.5], 1.0), Weights::Direct, s(front), s(back), length);
+            let result = whole(&pieces(&lively(), [-1.5, 3.5], 1.0), s(front), s(back), length);
             for v in result {
                 prop_assert!((0.0..=1.0 + 1e-5).contains(&v), "{result:?}");
             }
@@ -196,7 +216,7 @@ mod tests {
     #[test]
     fn a_range_of_no_width_is_one_value() {
         let pieces = pieces(&lively(), [0.75, 0.75], 1.0);
-        let got = integrate(&pieces, Weights::Direct, 0.0, 0.0, 0.5);
+        let got = whole(&pieces, 0.0, 0.0, 0.5);
         assert!((f64::from(got[3]) - (1.0 - (-2.0f64).exp())).abs() < TOLERANCE, "opacity 4 over half a unit: {got:?}");
     }
 }

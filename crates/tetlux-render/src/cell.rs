@@ -43,7 +43,7 @@ pub(crate) struct Reference {
     depth: f32,
     scalar: f32,
     w: [f32; 2],
-    s: [f32; 2],
+    pub(crate) s: [f32; 2],
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
-use tetlux_optics::transfer_f32::{Piece, Weights, integrate};
+use tetlux_optics::transfer_f32::{Piece, Weights, integrate, piece_at};
 
 use crate::cell::{Cell, Kind, Lens, Reference, Vertex};
 use crate::device_mesh::{DeviceMesh, NEGATIVE};
@@ -20,6 +20,8 @@ const MARGIN: f32 = 0.03125;
 struct Projected {
     cell: Cell,
     reference: Reference,
+    /// First and last piece of the transfer function that the cell's scalars meet.
+    pieces: [usize; 2],
     /// First and one past the last pixel, in x and in y.
     columns: [u32; 2],
     rows: [u32; 2],
@@ -100,7 +102,8 @@ fn project(job: &Job, index: u32) -> Option<Projected> {
     let rows = span(low.y, high.y, job.size[1]);
     let seen = columns[0] < columns[1] && rows[0] < rows[1];
     let reference = job.lens.cell_reference(&vertices, scalars, cell.kind);
-    seen.then_some(Projected { cell, reference, columns, rows })
+    let pieces = reference.s.map(|s| piece_at(job.pieces, s));
+    seen.then_some(Projected { cell, reference, pieces, columns, rows })
 }
 
 /// For each band the cells that reach into it, in their order.
@@ -124,7 +127,8 @@ fn for_each_fragment(job: &Job, projected: &Projected, row: usize, mut f: impl F
     for column in projected.columns[0]..projected.columns[1] {
         let at = Vec2::new(column as f32 + 0.5 - middle, y);
         if let Some(segment) = job.lens.cell_segment(&projected.cell, &projected.reference, at) {
-            let color = integrate(job.pieces, job.weights, segment.s_front, segment.s_back, segment.length);
+            let color =
+                integrate(job.pieces, projected.pieces, job.weights, segment.s_front, segment.s_back, segment.length);
             f(column as usize, Fragment { depth: segment.depth, color });
         }
     }

@@ -17,7 +17,7 @@ fn push(cells: &mut MixedCells, number: u8, corners: &[u32]) {
 fn zoo(kinds: &[u8]) -> (MixedMesh, usize) {
     let mut mesh =
         MixedMesh { points: cuboid(N, Split::Six, [DVec3::ZERO, DVec3::ONE]).points, ..MixedMesh::default() };
-    let (mut cells, mut centres, mut expected) = (MixedCells::default(), Vec::new(), 0);
+    let (mut cells, mut centers, mut expected) = (MixedCells::default(), Vec::new(), 0);
     for_each_hexahedron(N.map(|n| n + 1), |[i, j, k], c| {
         let column = kinds[i + N[0] * j];
         // Wedges cut their upper and lower faces: a whole column has them, or none.
@@ -25,11 +25,11 @@ fn zoo(kinds: &[u8]) -> (MixedMesh, usize) {
             0 => push(&mut cells, 12, &c),
             1 => push(&mut cells, 11, &[c[0], c[1], c[3], c[2], c[4], c[5], c[7], c[6]]),
             2 => {
-                let centre = (mesh.points.len() + centres.len()) as u32;
-                centres.push((mesh.points[c[0] as usize] + mesh.points[c[6] as usize]) * 0.5);
+                let center = (mesh.points.len() + centers.len()) as u32;
+                centers.push((mesh.points[c[0] as usize] + mesh.points[c[6] as usize]) * 0.5);
                 for face in [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]] {
                     let [p, q, r, s] = face.map(|f: usize| c[f]);
-                    push(&mut cells, 14, &[p, q, r, s, centre]);
+                    push(&mut cells, 14, &[p, q, r, s, center]);
                 }
                 expected += 6;
             }
@@ -40,7 +40,7 @@ fn zoo(kinds: &[u8]) -> (MixedMesh, usize) {
         }
         expected += 6;
     });
-    mesh.points.extend(centres);
+    mesh.points.extend(centers);
     mesh.cells = cells;
     (mesh, expected)
 }

@@ -103,10 +103,10 @@ impl Side {
         let core = (1.0 - 0.25 * broken) * gauss(r / radius) * hollow;
 
         let from_axis = place - axis - 0.5 * helix;
-        let sheet = (0.42 - 0.17 * broken) * spiral(from_axis, p.x, broken);
+        let sheet = (0.44 - 0.12 * broken) * spiral(from_axis, p.x, broken);
         let over = 1.0 - step(0.95, 1.15, p.x);
         let secondary = 0.3 * over * gauss(place.distance(DVec2::new(0.87, 0.085)) / 0.05);
-        (core + sheet + secondary) * (1.0 + (0.04 + 0.4 * broken) * wave).max(0.0)
+        (core + sheet + secondary) * (1.0 + (0.04 + 0.24 * broken) * wave).max(0.0)
     }
 }
 

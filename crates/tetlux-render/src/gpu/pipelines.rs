@@ -60,7 +60,7 @@ impl Pipelines {
             "scene",
             &[
                 (geometry | ShaderStages::FRAGMENT, uniform),
-                (ShaderStages::FRAGMENT, storage),
+                (ShaderStages::VERTEX_FRAGMENT, storage),
                 (geometry, storage),
                 (geometry, storage),
                 (geometry, storage),
