@@ -1,1 +1,46 @@
-//! benches
+//! Scenes that the benchmarks share.
+
+use glam::DVec3;
+use tetlux_mesh::procedural::{self, Parts, Split};
+use tetlux_mesh::{Component, Field, TetMesh};
+use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
+use tetlux_scene::{Camera, Method, Scene};
+
+/// A cube of n^3 hexahedra split in six, with a field that has structure at every scale of the cells.
+pub fn cube(n: usize) -> (Parts, Field) {
+    let parts = procedural::cuboid([n; 3], Split::Six, [DVec3::splat(-1.0), DVec3::ONE]);
+    let values = parts.sample(|p| (7.0 * p.x).sin() * (5.0 * p.y).cos() + p.z);
+    (parts, Field::point("waves", 1, values))
+}
+
+/// The cube assembled.
+pub fn cube_mesh(n: usize) -> TetMesh {
+    let (parts, field) = cube(n);
+    TetMesh::assemble(&parts.points, &parts.cells, vec![field]).unwrap_or_else(|e| panic!("the cube is a mesh: {e}"))
+}
+
+/// Nine control points: gentle ramps if `smooth`, else narrow peaks.
+pub fn transfer(smooth: bool) -> TransferFunction {
+    let node = |i: usize| -2.0 + 0.5 * i as f64;
+    let color = (0..9).map(|i| ColorNode { s: node(i), rgb: [0.1 * i as f64, 0.5, 1.0 - 0.1 * i as f64] });
+    let opacity = (0..9).map(|i| OpacityNode {
+        s: node(i),
+        opacity: if smooth { 0.1 * i as f64 } else { [0.0, 0.0, 8.0][i % 3] },
+    });
+    TransferFunction::new(color.collect(), opacity.collect()).unwrap_or_else(|e| panic!("nodes ascend: {e}"))
+}
+
+/// A mesh seen from outside, 400 x 400.
+pub fn scene(mesh: &TetMesh, smooth: bool, method: Method) -> Scene {
+    Scene {
+        scalar: mesh
+            .scalar("waves", Component::Magnitude)
+            .unwrap_or_else(|e| panic!("the cube has the field: {e}")),
+        transfer: transfer(smooth),
+        unit_distance: 1.0,
+        camera: Camera::framing(mesh.bounds(), DVec3::new(-1.0, 1.5, -0.8), DVec3::Z),
+        size: [400, 400],
+        background: [0.0; 3],
+        method,
+    }
+}
