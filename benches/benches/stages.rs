@@ -43,8 +43,7 @@ fn order(c: &mut Criterion) {
 }
 
 fn optics(c: &mut Criterion) {
-    let depths: Vec<(f64, f64)> =
-        (0..1000).map(|i| (1e-4 * 1.02f64.powi(i), 1e-3 * 1.015f64.powi(999 - i))).collect();
+    let depths: Vec<(f64, f64)> = (0..1000).map(|i| (1e-4 * 1.02f64.powi(i), 1e-3 * 1.015f64.powi(999 - i))).collect();
     let mut group = c.benchmark_group("optics");
     group.throughput(Throughput::Elements(depths.len() as u64));
     group.bench_function("weights f64", |b| {
@@ -104,12 +103,8 @@ fn reference(c: &mut Criterion) {
         tolerance: DEFAULT_TOLERANCE,
     };
     let caster = Caster::new(scene).unwrap_or_else(|e| panic!("{e}"));
-    let ray = Ray {
-        origin: [3.0, -4.0, 2.0].into(),
-        direction: [-3.01, 4.02, -1.9].into(),
-        start: 0.0,
-        end: f64::INFINITY,
-    };
+    let ray =
+        Ray { origin: [3.0, -4.0, 2.0].into(), direction: [-3.01, 4.02, -1.9].into(), start: 0.0, end: f64::INFINITY };
     let mut group = c.benchmark_group("reference");
     group.throughput(Throughput::Elements(caster.cast(&ray).segments as u64));
     group.bench_function("ray", |b| b.iter(|| caster.cast(black_box(&ray))));

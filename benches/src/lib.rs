@@ -23,19 +23,15 @@ pub fn cube_mesh(n: usize) -> TetMesh {
 pub fn transfer(smooth: bool) -> TransferFunction {
     let node = |i: usize| -2.0 + 0.5 * i as f64;
     let color = (0..9).map(|i| ColorNode { s: node(i), rgb: [0.1 * i as f64, 0.5, 1.0 - 0.1 * i as f64] });
-    let opacity = (0..9).map(|i| OpacityNode {
-        s: node(i),
-        opacity: if smooth { 0.1 * i as f64 } else { [0.0, 0.0, 8.0][i % 3] },
-    });
+    let opacity = (0..9)
+        .map(|i| OpacityNode { s: node(i), opacity: if smooth { 0.1 * i as f64 } else { [0.0, 0.0, 8.0][i % 3] } });
     TransferFunction::new(color.collect(), opacity.collect()).unwrap_or_else(|e| panic!("nodes ascend: {e}"))
 }
 
 /// A mesh seen from outside, 400 x 400.
 pub fn scene(mesh: &TetMesh, smooth: bool, method: Method) -> Scene {
     Scene {
-        scalar: mesh
-            .scalar("waves", Component::Magnitude)
-            .unwrap_or_else(|e| panic!("the cube has the field: {e}")),
+        scalar: mesh.scalar("waves", Component::Magnitude).unwrap_or_else(|e| panic!("the cube has the field: {e}")),
         transfer: transfer(smooth),
         unit_distance: 1.0,
         camera: Camera::framing(mesh.bounds(), DVec3::new(-1.0, 1.5, -0.8), DVec3::Z),

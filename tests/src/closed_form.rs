@@ -95,10 +95,13 @@ pub struct Judged {
     pub max: f64,
     /// Pixels off by more than the tolerance.
     pub wrong: usize,
-    /// Pixels whose ray runs in a surface where the truth jumps: either value was accepted.
+    /// Pixels whose ray runs in a surface where the truth jumps: accepted was any value between the two sides', since
+    /// the cells along the ray each lie on one side or the other.
     pub on_a_jump: usize,
     /// Pixels whose truth is not empty.
     pub covered: usize,
+    /// Column and row of the pixel with the largest error, what it shows, and what it should.
+    pub worst: ([usize; 2], [f32; 4], [f64; 4]),
 }
 
 /// Pixels by which rays are moved to see whether the truth jumps there: single precision knows positions in pictures
@@ -113,7 +116,7 @@ pub fn judge(
     truth: impl Fn(DVec3, DVec3, f64) -> Option<[f64; 4]>,
 ) -> Judged {
     let view = view(scene);
-    let mut judged = Judged { max: 0.0, wrong: 0, on_a_jump: 0, covered: 0 };
+    let mut judged = Judged { max: 0.0, wrong: 0, on_a_jump: 0, covered: 0, worst: Default::default() };
     for (index, &pixel) in image.pixels().iter().enumerate() {
         let width = view.size[0] as usize;
         let value = |dx: f64, dy: f64| {
@@ -127,15 +130,23 @@ pub fn judge(
         let jump = |other: &[f64; 4]| (0..4).any(|i| (other[i] - exact[i]).abs() > 100.0 * JUMP);
         let error = if around.iter().any(jump) {
             judged.on_a_jump += 1;
-            let sides = around.iter().chain([&exact]).map(|&side| pixel_error(pixel, side));
-            // Moving the ray changes the value by a slope times JUMP besides.
-            (sides.fold(f64::INFINITY, f64::min) - 10.0 * JUMP).max(0.0)
+            // Between the two sides; moving the ray changes each by a slope times JUMP besides.
+            let sides = || around.iter().chain([&exact]);
+            let nearest: [f64; 4] = std::array::from_fn(|i| {
+                let low = sides().fold(f64::INFINITY, |m, side| m.min(side[i])) - 10.0 * JUMP;
+                let high = sides().fold(0.0, |m: f64, side| m.max(side[i])) + 10.0 * JUMP;
+                f64::from(pixel[i]).clamp(low, high)
+            });
+            pixel_error(pixel, nearest)
         } else {
             pixel_error(pixel, exact)
         };
         judged.covered += usize::from(exact[3] > 0.0);
         judged.wrong += usize::from(error > tolerance);
-        judged.max = judged.max.max(error);
+        if error > judged.max {
+            judged.max = error;
+            judged.worst = ([index % width, index / width], pixel, exact);
+        }
     }
     judged
 }
@@ -183,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_planted_wrong_pixel_is_judged_wrong_and_a_jump_takes_either_value() {
+    fn a_planted_wrong_pixel_is_judged_wrong_and_a_jump_takes_what_lies_between() {
         let parts = cuboid([1, 1, 1], Split::Six, [DVec3::ZERO, DVec3::ONE]);
         let mesh = mesh_of(&parts, |_| 0.0);
         // Pixels of 1/4 whose centres fall on the box's sides.
@@ -192,14 +203,13 @@ mod tests {
         let body = Convex::cuboid([DVec3::ZERO, DVec3::ONE]);
         let truth = |o, d, start| body.chord(o, d, start).map(|[a, b]| [-(a - b).exp_m1(); 4]);
         let mut image = render(&mesh, &scene, Way::CpuPixel);
-        for row in image.pixels().chunks(7) { eprintln!("{:?}", row.iter().map(|p| p[3]).collect::<Vec<_>>()); }
         let good = judge(&image, &scene, 1e-5, truth);
         // 25 centres on and in the box, 9 of them inside.
         assert_eq!((good.wrong, good.on_a_jump), (0, 16));
         image.pixels_mut()[3 * 7 + 3][1] += 1e-3;
         assert_eq!(judge(&image, &scene, 1e-5, truth).wrong, 1);
-        // On the side of the box: both the full value and none are right, half of it is wrong.
-        for (value, wrong) in [(0.0, 1), (-(-1.0f32).exp_m1(), 1), (0.3, 2)] {
+        // On the side of the box: nothing, the full value and what lies between are right, more is wrong.
+        for (value, wrong) in [(0.0, 1), (-(-1.0f32).exp_m1(), 1), (0.3, 1), (0.7, 2), (f32::NAN, 2)] {
             image.pixels_mut()[7 + 3] = [value; 4];
             assert_eq!(judge(&image, &scene, 1e-5, truth).wrong, wrong, "{value}");
         }

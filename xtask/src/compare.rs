@@ -23,8 +23,8 @@ Exit status: 0 within the error budget, 1 past it, 2 if something failed.";
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A scene file (none: the built-in scene), or two EXR files
-    #[arg(num_args = 0..=2, value_name = "SCENE | A.exr B.exr")]
+    /// A scene file or a mesh (none: the built-in scene), or two EXR files
+    #[arg(num_args = 0..=2, value_name = "SCENE | MESH | A.exr B.exr")]
     what: Vec<PathBuf>,
     #[command(flatten)]
     input: SceneArgs,
@@ -62,7 +62,7 @@ fn compare_files(args: &Args, a: &Path, b: &Path) -> Result<bool> {
     let (first, second) = (read_exr(a)?, read_exr(b)?);
     let metrics = compare(&first, &second, budget)?;
     print_metrics(&metrics, budget);
-    println!("{}", write_difference(&first, &second, &args.output.join(format!("{}-difference.png", stem(b))))?);
+    say!("{}", write_difference(&first, &second, &args.output.join(format!("{}-difference.png", stem(b))))?);
     if let Some(path) = &args.json {
         let files = [a, b].map(|p| p.display().to_string());
         write_json(path, &Files { files, max_error: budget, error: &metrics })?;
@@ -93,15 +93,17 @@ fn compare_scene(args: &Args, scene: Option<&Path>) -> Result<bool> {
     report.files.push(write_difference(&reference, &frame.image, &path("-difference"))?);
     if metrics.over > 0 && !matches!(plan.order, Order::Pixel | Order::None) {
         let (faults, picture) = ordering_faults(&input, &renderer, &plan, &frame.image, &reference)?;
-        println!(
+        say!(
             "of {} pixels over the budget, {} come right when their cells are sorted along the ray (then max {:.3e})",
-            faults.pixels_over, faults.mended_by_sorting, faults.max_after_sorting
+            faults.pixels_over,
+            faults.mended_by_sorting,
+            faults.max_after_sorting
         );
         write_png(&picture, &path("-order-faults"), Encoding::Srgb)?;
         report.files.push(path("-order-faults").display().to_string());
         report.ordering_faults = Some(faults);
     }
-    println!("{}", report.files.join("\n"));
+    say!("{}", report.files.join("\n"));
     let within = verdict(&metrics, budget);
     report.error = Some(metrics);
     if let Some(path) = &args.json {
@@ -112,7 +114,7 @@ fn compare_scene(args: &Args, scene: Option<&Path>) -> Result<bool> {
 
 fn verdict(metrics: &Metrics, budget: f64) -> bool {
     let within = metrics.over == 0 && metrics.non_finite == 0;
-    println!("{} the error budget of {budget:.1e}", if within { "within" } else { "PAST" });
+    say!("{} the error budget of {budget:.1e}", if within { "within" } else { "PAST" });
     within
 }
 

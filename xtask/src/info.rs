@@ -102,8 +102,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 impl Info {
     fn print(&self) {
-        let row = |name: &str, value: String| println!("{name:<16} {value}");
-        println!("{}", self.file);
+        let row = |name: &str, value: String| say!("{name:<16} {value}");
+        say!("{}", self.file);
         for (name, count) in &self.cells_by_type {
             row("in the file", format!("{count} {name}"));
         }

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::Args;
 use tetlux_ingest::{ReadOptions, Split, TetMesh, read_tet_mesh};
 use tetlux_mesh::procedural;
-use tetlux_scene::{Backend, Integrator, Order, Projection, Scene, SceneFile};
+use tetlux_scene::{Backend, Integrator, Order, Projection, Scene, SceneFile, UnitDistance};
 
 use crate::progress;
 
@@ -68,43 +68,52 @@ pub(crate) struct Input {
     pub(crate) display_space: bool,
 }
 
-/// The scene that is rendered where none is named.
+/// The scene of a mesh that comes without one.
+const DEFAULT: &str = include_str!("../../scenes/default.toml");
+/// The scene that is rendered where nothing is named.
 const BUILT_IN: &str = include_str!("../../scenes/wing.toml");
 /// Tetrahedra of its mesh.
 const BUILT_IN_CELLS: usize = 100_000;
 const BUILT_IN_SEED: u64 = 1;
 
 impl SceneArgs {
-    /// Reads the scene (the built-in one without a path) and its mesh.
-    pub(crate) fn load(&self, scene: Option<&Path>) -> Result<Input> {
-        let built_in = scene.is_none() && self.mesh.is_none();
-        let (name, mut file) = match scene {
-            Some(path) => (stem(path), SceneFile::read(path)?),
-            None => ("wing".to_string(), SceneFile::parse("the built-in scene", BUILT_IN)?),
+    /// Reads a scene and its mesh. `path` is a scene file, or a mesh to be shown with the default scene; without one,
+    /// and without a mesh among the flags, it is the built-in scene.
+    pub(crate) fn load(&self, path: Option<&Path>) -> Result<Input> {
+        let is_scene = path.is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")));
+        let mesh = if is_scene { None } else { path.or(self.mesh.as_deref()) };
+        let (name, mut file) = match (path, mesh) {
+            (Some(scene), None) => (stem(scene), SceneFile::read(scene)?),
+            (_, Some(mesh)) => (stem(mesh), SceneFile::parse("the default scene", DEFAULT)?),
+            (None, None) => ("wing".to_string(), SceneFile::parse("the built-in scene", BUILT_IN)?),
         };
-        if !built_in && scene.is_none() {
-            bail!(
-                "a mesh needs a scene that says how to show it: cargo xtask render SCENE.toml --mesh {}",
-                self.mesh.as_deref().unwrap_or(Path::new("FILE")).display()
-            );
+        if let (Some(path), Some(flag)) = (path.filter(|_| !is_scene), &self.mesh) {
+            bail!("two meshes are given, {} and {}: keep one of them", path.display(), flag.display());
         }
         self.override_scene(&mut file)?;
-        let mesh = if built_in {
-            progress::during("making the built-in mesh", || {
+        let mesh_path = mesh.map(Path::to_path_buf).or(file.mesh.clone());
+        let mesh = match mesh_path {
+            None if path.is_none() => progress::during("making the built-in mesh", || {
                 let wing = procedural::wing(BUILT_IN_SEED, BUILT_IN_CELLS);
                 TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])
-            })?
-        } else {
-            let path = file.mesh.clone().with_context(|| {
-                format!(
-                    "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" under [mesh]",
-                    file.name
-                )
-            })?;
-            let options = ReadOptions { solution: file.solution.clone() };
-            let split = if file.split == Some(5) { Split::Five } else { Split::Six };
-            progress::during("reading the mesh", || read_tet_mesh(&path, &options, split))?
+            })?,
+            None => bail!(
+                "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" under [mesh]",
+                file.name
+            ),
+            Some(path) => {
+                let options = ReadOptions { solution: file.solution.clone() };
+                let split = if file.split == Some(5) { Split::Five } else { Split::Six };
+                progress::during("reading the mesh", || read_tet_mesh(&path, &options, split))?
+            }
         };
+        if mesh.fields().is_empty() {
+            bail!("{name}: the mesh has no fields to show (a PLOT3D grid needs its --solution)");
+        }
+        if path.is_none() || !is_scene {
+            // The first field, as other programs do; the report says which.
+            file.field = file.field.or_else(|| mesh.fields().first().map(|f| f.name.clone()));
+        }
         let mut scene = file.scene(&mesh, self.camera)?;
         if let Some(parallel_scale) = self.parallel_scale {
             scene.camera.projection = Projection::Orthographic { parallel_scale };
@@ -135,7 +144,7 @@ impl SceneArgs {
         }
         file.component = self.component.or(file.component);
         file.size = self.size.unwrap_or(file.size);
-        file.unit_distance = self.unit_distance.or(file.unit_distance);
+        file.unit_distance = self.unit_distance.map_or(file.unit_distance, UnitDistance::Length);
         file.display_space |= self.display_space;
         let method = &mut file.method;
         method.backend = self.backend.unwrap_or(method.backend);

@@ -1,5 +1,8 @@
 //! tetlux at the command line. It parses, calls and prints; the work is done in the crates.
 
+#[macro_use]
+mod output;
+
 mod compare;
 mod info;
 mod input;

@@ -14,13 +14,15 @@ use crate::report::{Report, create_folder};
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   cargo xtask render
+  cargo xtask render mesh.vtu --field pressure
   cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfin_tets.vtu
   cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfinxyz.bin --solution bluntfinq.bin --field Density
   cargo xtask render scene.toml --size 1600x900 --backend cpu --order pixel --output pictures/fin.png --json fin.json";
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Scene file (TOML); none: the built-in scene
+    /// Scene file (.toml), or a mesh to show with the default scene; none: the built-in scene
+    #[arg(value_name = "SCENE | MESH")]
     scene: Option<PathBuf>,
     #[command(flatten)]
     input: SceneArgs,
@@ -43,7 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     report.print_stages();
     let png = args.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name).with_extension("png"));
     report.files = write_picture(&input, &frame.image, &png)?;
-    println!("{}", report.files.join("\n"));
+    say!("{}", report.files.join("\n"));
     if let Some(path) = &args.json {
         report.write(path)?;
     }

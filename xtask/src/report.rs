@@ -15,6 +15,8 @@ use crate::input::Input;
 pub(crate) struct Report<'a> {
     scene: &'a str,
     title: &'a str,
+    field: &'a str,
+    field_range: [f64; 2],
     points: usize,
     cells: usize,
     cells_drawn: usize,
@@ -58,6 +60,8 @@ impl<'a> Report<'a> {
         Report {
             scene: &input.name,
             title: &input.title,
+            field: &input.scene.scalar.name,
+            field_range: input.scene.scalar.range,
             points: input.mesh.points().len(),
             cells: input.mesh.cells().len(),
             cells_drawn: plan.cells.len(),
@@ -83,20 +87,21 @@ impl<'a> Report<'a> {
     /// Prints what is rendered, how, and why so.
     pub(crate) fn print_plan(&self, plan: &Plan) {
         let title = if self.title.is_empty() { self.scene } else { self.title };
-        println!("{title}: {} points, {} cells", self.points, self.cells);
-        println!("adapter: {}", self.adapter.unwrap_or("none; rendering on the CPU"));
-        println!("plan ({} x {}, unit distance {:.4}):", self.size[0], self.size[1], self.unit_distance);
-        print!("{plan}");
+        say!("{title}: {} points, {} cells", self.points, self.cells);
+        say!("field: \"{}\", {} to {}", self.field, self.field_range[0], self.field_range[1]);
+        say!("adapter: {}", self.adapter.unwrap_or("none; rendering on the CPU"));
+        say!("plan ({} x {}, unit distance {:.4}):", self.size[0], self.size[1], self.unit_distance);
+        say!("{}", plan.to_string().trim_end());
         for warning in self.warnings {
-            println!("warning: {warning}");
+            say!("warning: {warning}");
         }
     }
 
     pub(crate) fn print_stages(&self) {
-        println!("{:<14} {:>9} {:>9}", "stage", "wall ms", "CPU ms");
+        say!("{:<14} {:>9} {:>9}", "stage", "wall ms", "CPU ms");
         let row = |name: &str, wall: f64, cpu: Option<f64>| {
             let cpu = cpu.map_or("-".to_string(), |s| format!("{:.1}", s * 1e3));
-            println!("{name:<14} {:>9.1} {cpu:>9}", wall * 1e3);
+            say!("{name:<14} {:>9.1} {cpu:>9}", wall * 1e3);
         };
         for stage in &self.stages {
             row(stage.name, stage.wall_seconds, stage.cpu_seconds);
@@ -112,12 +117,12 @@ impl<'a> Report<'a> {
 
 /// Prints the figures of a comparison.
 pub(crate) fn print_metrics(metrics: &Metrics, budget: f64) {
-    println!("error over {} covered pixels, linear, worst channel:", metrics.covered);
-    println!("  max    {:.3e} at pixel ({}, {})", metrics.max, metrics.worst[0], metrics.worst[1]);
-    println!("  mean   {:.3e}", metrics.mean);
-    println!("  p99.9  {:.3e}", metrics.p999);
-    println!("  PSNR   {:.1} dB", metrics.psnr);
-    println!("  over {budget:.1e}: {} pixels; not finite: {} pixels", metrics.over, metrics.non_finite);
+    say!("error over {} covered pixels, linear, worst channel:", metrics.covered);
+    say!("  max    {:.3e} at pixel ({}, {})", metrics.max, metrics.worst[0], metrics.worst[1]);
+    say!("  mean   {:.3e}", metrics.mean);
+    say!("  p99.9  {:.3e}", metrics.p999);
+    say!("  PSNR   {:.1} dB", metrics.psnr);
+    say!("  over {budget:.1e}: {} pixels; not finite: {} pixels", metrics.over, metrics.non_finite);
 }
 
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {

@@ -145,3 +145,65 @@ impl TetMesh {
         if names.is_empty() { "no fields".into() } else { names.join(", ") }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::procedural::{Split, cuboid};
+
+    /// Two cells, and what they carry.
+    fn mesh(fields: Vec<Field>) -> TetMesh {
+        let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE];
+        TetMesh::assemble(&points, &[[0, 1, 2, 3], [1, 2, 3, 4]], fields).unwrap()
+    }
+
+    #[test]
+    fn scalars_are_found_by_name_and_component() {
+        let wind = Field::point("wind", 2, vec![3.0, 4.0, 0.0, -2.0, f64::NAN, 1.0, 6.0, 8.0, 0.0, 0.0]);
+        let mesh = mesh(vec![wind, Field::cell("rank", 1, vec![-7.0, 5.0])]);
+        let speed = mesh.scalar("wind", Component::Magnitude).unwrap();
+        assert_eq!((&speed.values[..2], speed.range, speed.missing), (&[5.0, 2.0][..], [0.0, 10.0], 1));
+        assert_eq!(mesh.scalar("wind", Component::Index(1)).unwrap().range, [-2.0, 8.0]);
+        let rank = mesh.scalar("rank", Component::Magnitude).unwrap();
+        assert_eq!((rank.location, &rank.values[..]), (Location::Cell, &[-7.0, 5.0][..]));
+    }
+
+    #[test]
+    fn scalars_that_are_not_there_are_named() {
+        let mesh = mesh(vec![Field::point("void", 1, vec![f64::NAN; 5]), Field::cell("rank", 1, vec![0.0, 1.0])]);
+        let refuse = |name, component| mesh.scalar(name, component).unwrap_err();
+        assert!(matches!(refuse("void", Component::Magnitude), MeshError::NoData { count: 5, .. }));
+        assert!(matches!(
+            refuse("rank", Component::Index(1)),
+            MeshError::NoComponent { components: 1, component: 1, .. }
+        ));
+        let message = refuse("heat", Component::Magnitude).to_string();
+        assert!(message.contains("\"heat\"") && message.contains("\"void\" (points, 1 component)"), "{message}");
+    }
+
+    #[test]
+    fn ranges_of_cells_span_their_vertices() {
+        let mesh = mesh(vec![
+            Field::point("f", 1, vec![f64::NAN, 1.0, -2.0, 3.0, 0.5]),
+            Field::cell("g", 1, vec![2.0, f64::INFINITY]),
+        ]);
+        let ranges = |name| mesh.scalar_ranges(&mesh.scalar(name, Component::Magnitude).unwrap());
+        let f = ranges("f");
+        assert!(f[0].iter().all(|v| v.is_nan()));
+        assert_eq!(f[1], [-2.0, 3.0]);
+        let g = ranges("g");
+        assert_eq!(g[0], [2.0, 2.0]);
+        assert!(g[1].iter().all(|v| v.is_nan()));
+    }
+
+    #[test]
+    fn the_origin_is_the_middle_and_world_positions_are_those_given() {
+        let corners = [DVec3::new(10.0, 20.0, 30.0), DVec3::new(12.0, 24.0, 31.0)];
+        let parts = cuboid([1, 1, 1], Split::Six, corners);
+        let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![]).unwrap();
+        assert_eq!(mesh.origin(), DVec3::new(11.0, 22.0, 30.5));
+        assert_eq!(mesh.bounds(), corners);
+        assert_eq!(mesh.local_bounds(), [DVec3::new(-1.0, -2.0, -0.5), DVec3::new(1.0, 2.0, 0.5)]);
+        assert_eq!(mesh.world(7), corners[1]);
+    }
+}

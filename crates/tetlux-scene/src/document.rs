@@ -8,7 +8,7 @@ use serde::Deserialize;
 use tetlux_optics::transfer::{ColorNode, NodeKind, OpacityNode, TransferFunction, TransferFunctionError};
 use toml::Spanned;
 
-use crate::file::{CameraSpec, TransferSource};
+use crate::file::{CameraSpec, NodeRange, TransferSource, UnitDistance};
 use crate::{Backend, Integrator, Method, Order, Projection, SceneError, SceneFile};
 
 #[derive(Deserialize)]
@@ -52,7 +52,10 @@ struct Transfer {
     preset: Option<PathBuf>,
     preset_name: Option<String>,
     range: Option<Spanned<[f64; 2]>>,
+    #[serde(default)]
+    fit_to_field: bool,
     unit_distance: Option<Spanned<f64>>,
+    relative_unit_distance: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -123,7 +126,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
     {
         return Err(source.value(spanned, "background", format!("{background:?} must be finite and at least 0")));
     }
-    let unit_distance = source.positive(transfer.get_ref().unit_distance.as_ref(), "unit_distance")?;
+    let unit_distance = source.unit_distance(transfer.get_ref())?;
     let defaults = Method::default();
     let max_error = source.positive(method.max_error.as_ref(), "max_error")?.unwrap_or(defaults.max_error);
     Ok(SceneFile {
@@ -133,7 +136,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
         split: mesh.split.map(Spanned::into_inner),
         field: field.name,
         component: field.component,
-        range: source.range(transfer.get_ref())?,
+        range: source.range(&transfer)?,
         transfer: source.transfer(transfer, beside)?,
         unit_distance,
         cameras: camera.into_iter().map(|c| source.camera(c)).collect::<Result<_, _>>()?,
@@ -166,11 +169,30 @@ impl Source<'_> {
         }
     }
 
-    fn range(&self, transfer: &Transfer) -> Result<Option<[f64; 2]>, SceneError> {
-        let Some(range) = &transfer.range else { return Ok(None) };
+    fn unit_distance(&self, transfer: &Transfer) -> Result<UnitDistance, SceneError> {
+        let length = self.positive(transfer.unit_distance.as_ref(), "unit_distance")?;
+        let share = self.positive(transfer.relative_unit_distance.as_ref(), "relative_unit_distance")?;
+        match (length, share, &transfer.unit_distance) {
+            (Some(_), Some(_), Some(at)) => {
+                Err(self.value(at, "unit_distance", "is given relatively too: keep one of them".into()))
+            }
+            (Some(length), ..) => Ok(UnitDistance::Length(length)),
+            (None, Some(share), _) => Ok(UnitDistance::OfDiagonal(share)),
+            (None, None, _) => Ok(UnitDistance::MeanEdge),
+        }
+    }
+
+    fn range(&self, transfer: &Spanned<Transfer>) -> Result<NodeRange, SceneError> {
+        let t = transfer.get_ref();
+        let Some(range) = &t.range else {
+            return Ok(if t.fit_to_field || t.preset.is_some() { NodeRange::Field } else { NodeRange::AsGiven });
+        };
+        if t.fit_to_field {
+            return Err(self.value(range, "range", "is given and fit_to_field too: keep one of them".into()));
+        }
         let [lo, hi] = *range.get_ref();
         if lo < hi && lo.is_finite() && hi.is_finite() {
-            Ok(Some([lo, hi]))
+            Ok(NodeRange::Given([lo, hi]))
         } else {
             Err(self.value(range, "range", format!("[{lo}, {hi}] must ascend and be finite")))
         }

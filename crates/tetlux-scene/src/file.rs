@@ -26,11 +26,10 @@ pub struct SceneFile {
     pub component: Option<usize>,
     /// Luminance and opacity over it.
     pub transfer: TransferSource,
-    /// The scalars that the first and last node are stretched to; none: nodes stay where they are, a preset spans
-    /// the field's range.
-    pub range: Option<[f64; 2]>,
-    /// World length over which an opacity of 1 is an optical depth of 1; none: the mesh's mean edge length.
-    pub unit_distance: Option<f64>,
+    /// Where the first and last node lie.
+    pub range: NodeRange,
+    /// World length over which an opacity of 1 is an optical depth of 1.
+    pub unit_distance: UnitDistance,
     /// Cameras; none: one is framed automatically.
     pub cameras: Vec<CameraSpec>,
     /// Width and height in pixels.
@@ -57,6 +56,28 @@ pub enum TransferSource {
         /// Which of its presets; none: its only one.
         name: Option<String>,
     },
+}
+
+/// Where the first and last node of a transfer function lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NodeRange {
+    /// As the nodes say.
+    AsGiven,
+    /// Stretched to two scalars, ascending.
+    Given([f64; 2]),
+    /// Stretched to the field's range: the default of presets.
+    Field,
+}
+
+/// World length over which an opacity of 1 is an optical depth of 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum UnitDistance {
+    /// The mesh's mean edge length: the default, as ParaView's.
+    MeanEdge,
+    /// A length in world units, positive.
+    Length(f64),
+    /// A share of the diagonal of the mesh's bounding box, positive.
+    OfDiagonal(f64),
 }
 
 /// A camera, explicit as far as it is given, framed automatically for the rest.
@@ -108,7 +129,14 @@ impl SceneFile {
         let scalar = mesh.scalar(&field, self.component.map_or(Component::Magnitude, Component::Index))?;
         Ok(Scene {
             transfer: self.transfer(scalar.range)?,
-            unit_distance: self.unit_distance.unwrap_or_else(|| mesh.mean_edge_length()),
+            unit_distance: match self.unit_distance {
+                UnitDistance::MeanEdge => mesh.mean_edge_length(),
+                UnitDistance::Length(length) => length,
+                UnitDistance::OfDiagonal(share) => {
+                    let [low, high] = mesh.local_bounds();
+                    share * low.distance(high)
+                }
+            },
             camera: self.camera(mesh, camera)?,
             size: self.size,
             background: self.background,
@@ -117,17 +145,21 @@ impl SceneFile {
         })
     }
 
-    fn transfer(&self, field_range: [f64; 2]) -> Result<TransferFunction, SceneError> {
-        match (&self.transfer, self.range) {
+    fn transfer(&self, [lowest, highest]: [f64; 2]) -> Result<TransferFunction, SceneError> {
+        let range = match self.range {
+            NodeRange::AsGiven => None,
+            NodeRange::Given(range) => Some(range),
+            // A constant field has no range to span: its value takes the lower end.
+            NodeRange::Field if lowest == highest => Some([lowest, lowest + lowest.abs().max(1.0)]),
+            NodeRange::Field => Some([lowest, highest]),
+        };
+        match (&self.transfer, range) {
             (TransferSource::Nodes(nodes), None) => Ok(nodes.clone()),
             (TransferSource::Nodes(nodes), Some(range)) => Ok(stretched(nodes, range)),
             (TransferSource::Preset { path, name }, range) => {
                 let failed = |source| SceneError::Preset { path: path.clone(), source };
                 let preset = read_preset(&read_text(path)?, name.as_deref()).map_err(failed)?;
-                // A constant field has no range to span: its value takes the preset's lower end.
-                let [lo, hi] = field_range;
-                let spanned = range.unwrap_or(if lo < hi { field_range } else { [lo, lo + lo.abs().max(1.0)] });
-                preset.transfer_function(Some(spanned)).map_err(failed)
+                preset.transfer_function(range).map_err(failed)
             }
         }
     }

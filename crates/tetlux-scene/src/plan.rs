@@ -196,3 +196,122 @@ fn is_flat(mesh: &TetMesh, cell: &[u32; 4]) -> bool {
     let p = cell.map(|v| mesh.points()[v as usize].as_dvec3());
     (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) == 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use tetlux_mesh::procedural::{self, Split};
+    use tetlux_mesh::{Component, Field};
+    use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
+
+    use super::*;
+    use crate::{Camera, Method, Projection};
+
+    /// Cubes side by side along x, six cells each, from 0 to `n`, with the scalar x; the last point's value is missing.
+    fn row(n: usize) -> TetMesh {
+        let parts = procedural::cuboid([n, 1, 1], Split::Six, [DVec3::ZERO, DVec3::new(n as f64, 1.0, 1.0)]);
+        let mut x = parts.sample(|p| p.x);
+        *x.last_mut().unwrap() = f64::NAN;
+        // A flat cell between three of the first cube's corners and the middle of one of its edges.
+        let mut parts = parts;
+        parts.points.push(DVec3::new(0.5, 0.0, 0.0));
+        x.push(0.5);
+        let flat = [0, 1, (n + 1) as u32, parts.points.len() as u32 - 1];
+        parts.cells.push(flat);
+        TetMesh::assemble(&parts.points, &parts.cells, vec![Field::point("x", 1, x)]).unwrap()
+    }
+
+    fn scene(mesh: &TetMesh, color: &[[f64; 3]], method: Method) -> Scene {
+        let node = |(i, &rgb): (usize, &[f64; 3])| ColorNode { s: i as f64, rgb };
+        Scene {
+            scalar: mesh.scalar("x", Component::Magnitude).unwrap(),
+            // Transparent up to 2.
+            transfer: TransferFunction::new(
+                color.iter().enumerate().map(node).collect(),
+                vec![OpacityNode { s: 2.0, opacity: 0.0 }, OpacityNode { s: 3.0, opacity: 1.0 }],
+            )
+            .unwrap(),
+            unit_distance: 1.0,
+            camera: Camera {
+                position: DVec3::new(4.5, -3.0, 0.5),
+                focal_point: DVec3::new(4.5, 0.0, 0.5),
+                view_up: DVec3::Z,
+                projection: Projection::Orthographic { parallel_scale: 0.75 },
+                near: 0.0,
+            },
+            size: [10, 10],
+            background: [0.0; 3],
+            method,
+        }
+    }
+
+    const GREY: [f64; 3] = [0.5; 3];
+
+    fn device(software: bool, blends_f32: bool) -> Device {
+        Device { name: "adapter".into(), software, blends_f32 }
+    }
+
+    #[test]
+    fn each_cell_is_skipped_for_its_reason() {
+        let mesh = row(7);
+        let plan = Plan::new(&scene(&mesh, &[GREY], Method::default()), &mesh, None).unwrap();
+        // The view spans x from 3.75 to 5.25: the cubes 3 to 6 x in [3, 6] are seen, of which all have opacity.
+        // Cubes 0 and 1 and the flat cell lie below scalar 2. In the last cube the far corner's six cells (each holds
+        // the diagonal's end) have no data.
+        let expected = Skips { no_data: 6, transparent: 2 * 6 + 1, flat: 0, outside: 6 };
+        assert_eq!(plan.skips, expected);
+        assert_eq!(plan.cells, (3 * 6..6 * 6).collect::<Vec<u32>>());
+        assert_eq!(plan.warnings.len(), 1, "missing data are warned of: {:?}", plan.warnings);
+    }
+
+    #[test]
+    fn flat_cells_are_skipped() {
+        let mesh = row(2);
+        let mut scene = scene(&mesh, &[GREY], Method::default());
+        scene.transfer =
+            TransferFunction::new(vec![ColorNode { s: 0.0, rgb: GREY }], vec![OpacityNode { s: 0.0, opacity: 1.0 }])
+                .unwrap();
+        scene.camera.projection = Projection::Orthographic { parallel_scale: 10.0 };
+        let plan = Plan::new(&scene, &mesh, None).unwrap();
+        assert_eq!((plan.skips.flat, plan.skips.outside), (1, 0));
+        assert!(!plan.cells.contains(&12));
+    }
+
+    #[test]
+    fn cells_behind_the_eye_are_outside() {
+        let mesh = row(2);
+        let mut scene = scene(&mesh, &[GREY], Method::default());
+        (scene.camera.position, scene.camera.focal_point) = (DVec3::new(0.0, 5.0, 0.5), DVec3::new(0.0, 9.0, 0.5));
+        scene.camera.projection = Projection::Perspective { view_angle: 30.0 };
+        assert!(Plan::new(&scene, &mesh, None).unwrap().cells.is_empty());
+    }
+
+    #[test]
+    fn backends_and_orders() {
+        let mesh = row(4);
+        let colors = [[0.1, 0.2, 0.3], [0.3, 0.2, 0.1], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let (hardware, software, half) = (device(false, true), device(true, true), device(false, false));
+        for (backend, order, device, expected) in [
+            (Backend::Auto, Order::Auto, None, Some((Backend::Cpu, Order::Pixel))),
+            (Backend::Auto, Order::Auto, Some(&hardware), Some((Backend::Gpu, Order::Centroid))),
+            (Backend::Auto, Order::Auto, Some(&software), Some((Backend::Cpu, Order::Pixel))),
+            (Backend::Auto, Order::Auto, Some(&half), Some((Backend::Cpu, Order::Pixel))),
+            (Backend::Gpu, Order::Auto, Some(&software), Some((Backend::Gpu, Order::Centroid))),
+            (Backend::Gpu, Order::Auto, Some(&half), None),
+            (Backend::Gpu, Order::Auto, None, None),
+            (Backend::Gpu, Order::Pixel, Some(&hardware), None),
+            (Backend::Cpu, Order::Centroid, Some(&hardware), Some((Backend::Cpu, Order::Centroid))),
+        ] {
+            let method = Method { backend, order, ..Method::default() };
+            let plan = Plan::new(&scene(&mesh, &colors, method), &mesh, device);
+            assert_eq!(plan.ok().map(|p| (p.backend, p.order)), expected, "{backend} {order} {device:?}");
+        }
+    }
+
+    #[test]
+    fn one_luminance_needs_no_order() {
+        let mesh = row(4);
+        let plan = Plan::new(&scene(&mesh, &[GREY], Method::default()), &mesh, Some(&device(false, true))).unwrap();
+        assert_eq!(plan.order, Order::None);
+        assert!(plan.warnings.iter().all(|w| !w.contains("centroid")));
+    }
+}

@@ -151,7 +151,7 @@ fn step(from: f64, to: f64, x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The axis of a vortex over the wing, before it breaks down.
+    /// The axis of a vortex over the wing, before it breaks down: that is behind x = 0.62 for every seed.
     fn axis(x: f64, sign: f64) -> DVec3 {
         let s = half_width(x);
         DVec3::new(x, sign * AXIS.x * s, AXIS.y * s)
@@ -161,7 +161,7 @@ mod tests {
     fn cores_are_bright_and_the_air_far_away_is_not() {
         for seed in 0..8 {
             let flow = Vortices::new(seed);
-            for x in [0.1, 0.3, 0.5, 0.7] {
+            for x in [0.1, 0.3, 0.45, 0.6] {
                 for sign in [1.0, -1.0] {
                     let core = flow.vorticity(axis(x, sign));
                     // One, less and more by the modulation of 4 per cent times at most four.

@@ -55,7 +55,7 @@ pub(super) fn half_thickness(x: f64) -> f64 {
 /// `cells` is the number of tetrahedra, met to about a tenth if above some thousands.
 pub fn wing(seed: u64, cells: usize) -> Wing {
     let layout = Layout::new(cells);
-    let counts = layout.counts();
+    let counts = layout.total;
     let mut parts = grid(counts, Split::Six, |u| layout.place(u));
     let mut hexahedron = 0;
     parts.cells = parts
@@ -76,8 +76,9 @@ pub fn wing(seed: u64, cells: usize) -> Wing {
     Wing { parts, field }
 }
 
-/// Hexahedra along each axis: before, inside and behind (or below, inside and above) the wing.
+/// How many hexahedra, and which of them the wing takes.
 struct Layout {
+    /// Hexahedra along each axis.
     total: [usize; 3],
     /// First and one past the last hexahedron of the wing.
     hole: [[usize; 2]; 3],
@@ -99,10 +100,6 @@ impl Layout {
         let plane = y.iter().sum::<usize>() * z.iter().sum::<usize>();
         let x = X.map(|n| count(n, hexahedra / plane as f64 / sum(&X)));
         Layout { total: [x, y, z].map(|n| n.iter().sum()), hole: [x, y, z].map(|n| [n[0], n[0] + n[1]]) }
-    }
-
-    fn counts(&self) -> [usize; 3] {
-        self.total
     }
 
     /// Position in [-1, 2] of a place in [0, 1] along an axis: -1 to 0 before the wing, 0 to 1 inside, 1 to 2 behind.
@@ -163,7 +160,7 @@ fn graded(t: f64, start: f64) -> f64 {
 /// Displaces the points inside the air at random; no cell keeps less than [`LEAST_VOLUME`] of its volume.
 fn jitter(parts: &mut Parts, layout: &Layout, seed: u64) {
     let mut random = SplitMix64::new(seed);
-    let counts = layout.counts();
+    let counts = layout.total;
     let n = counts.map(|c| c + 1);
     let spacing = DVec3::from(counts.map(|c| c as f64)).recip();
     let still = parts.points.clone();
@@ -252,9 +249,9 @@ mod tests {
     #[test]
     fn vertices_are_displaced_and_surfaces_are_not() {
         let layout = Layout::new(20_000);
-        let still = grid(layout.counts(), Split::Six, |u| layout.place(u)).points;
+        let still = grid(layout.total, Split::Six, |u| layout.place(u)).points;
         let moved = wing(1, 20_000).parts.points;
-        let n = layout.counts().map(|c| c + 1);
+        let n = layout.total.map(|c| c + 1);
         let mut displaced = 0;
         let mut inside = 0;
         for (p, (a, b)) in still.iter().zip(&moved).enumerate() {
