@@ -56,26 +56,36 @@ fn farthest_vertex(z: vec4<f32>) -> u32 {
     return far;
 }
 
+// Planes within this angle (in radians, roughly) of edge-on count as edge-on.
+const EDGE_ON = 1e-6;
+
+// A ray in a plane that is seen edge-on is taken for one this many pixels away: then all faces that meet in an edge
+// along the ray agree on which side of each it passes. No edge of a grid runs along this direction.
+const NUDGE = vec2<f32>(7.3e-5, 4.1e-5);
+
 // Plane of the face a, b, c, its vertices in ascending order of index; `inward` is +1 if (b-a) x (c-a) points into the
-// cell and -1 if out of it; w at the pixel of `reference` is the third component.
-fn face_plane(a: Vertex, b: Vertex, c: Vertex, inward: f32, reference: Vertex) -> vec4<f32> {
+// cell and -1 if out of it; `depth` is that of w = 0; the third component is w at the pixel of `origin`, less
+// that of `origin` itself.
+fn face_plane(a: Vertex, b: Vertex, c: Vertex, inward: f32, depth: f32, origin: Vertex) -> vec4<f32> {
     let n = cross(b.frame - a.frame, c.frame - a.frame);
     // Positive if the eye is on the side that n points away from.
     var side = dot(n, a.eye);
-    var least = 1e-12 * dot(abs(n), abs(a.eye));
-    var depth = reference.eye.z;
+    let reach = max(max(abs(a.eye), abs(b.eye)), abs(c.eye));
+    var scale = dot(abs(n), vec3<f32>(1.0)) * max(max(reach.x, reach.y), reach.z);
+    var rise = depth * view.pixel;
     if ORTHOGRAPHIC {
         side = n.z;
-        least = 1e-12 * (abs(n.x) + abs(n.y));
-        depth = 1.0;
+        scale = abs(n.x) + abs(n.y);
+        rise = view.pixel;
     }
     // Seen edge-on the plane bounds nothing but the silhouette: any large slope of the right sign does, and both cells
     // at the face choose the same.
-    let divisor = max(max(abs(side), least), 1e-30);
+    let edge_on = abs(side) <= EDGE_ON * scale;
+    let divisor = max(select(abs(side), 1e-12 * scale, edge_on), 1e-30);
     let toward = select(-1.0, 1.0, side >= 0.0);
-    let slope = clamp(n.xy * (depth * view.pixel * toward / divisor), vec2<f32>(-STEEPEST), vec2<f32>(STEEPEST));
-    let offset = clamp(dot(n, reference.frame - a.frame) * toward / divisor, -STEEPEST, STEEPEST);
-    return vec4<f32>(slope, offset, toward * inward);
+    let slope = clamp(n.xy * (rise * toward / divisor), vec2<f32>(-STEEPEST), vec2<f32>(STEEPEST));
+    let offset = dot(n, origin.frame - a.frame) * toward / divisor + select(0.0, dot(slope, NUDGE), edge_on);
+    return vec4<f32>(slope, clamp(offset, -STEEPEST, STEEPEST), toward * inward);
 }
 
 // v: vertices in ascending order of index; s: their scalars; parity: +1 if that order is positively oriented, else -1.
@@ -88,21 +98,21 @@ fn project_cell(v: array<Vertex, 4>, s: vec4<f32>, parity: f32) -> Cell {
     }
     if kind == DEEP {
         let far = v[farthest_vertex(z)];
-        cell.planes[0] = face_plane(v[1], v[2], v[3], -parity, far);
-        cell.planes[1] = face_plane(v[0], v[2], v[3], parity, far);
-        cell.planes[2] = face_plane(v[0], v[1], v[3], -parity, far);
-        cell.planes[3] = face_plane(v[0], v[1], v[2], parity, far);
+        cell.planes[0] = face_plane(v[1], v[2], v[3], -parity, far.eye.z, far);
+        cell.planes[1] = face_plane(v[0], v[2], v[3], parity, far.eye.z, far);
+        cell.planes[2] = face_plane(v[0], v[1], v[3], -parity, far.eye.z, far);
+        cell.planes[3] = face_plane(v[0], v[1], v[2], parity, far.eye.z, far);
     } else {
-        cell.planes[0] = face_plane(v[1], v[2], v[3], -parity, v[0]);
-        cell.planes[1] = face_plane(v[0], v[2], v[3], parity, v[0]);
-        cell.planes[2] = face_plane(v[0], v[1], v[3], -parity, v[0]);
-        cell.planes[3] = face_plane(v[0], v[1], v[2], parity, v[0]);
+        cell.planes[0] = face_plane(v[1], v[2], v[3], -parity, z.x, v[1]);
+        cell.planes[1] = face_plane(v[0], v[2], v[3], parity, z.x, v[0]);
+        cell.planes[2] = face_plane(v[0], v[1], v[3], -parity, z.x, v[0]);
+        cell.planes[3] = face_plane(v[0], v[1], v[2], parity, z.x, v[0]);
         // Plane 0 does not hold vertex 0: its origin is its own lowest vertex, where its depth is known.
         let step = v[0].frame.z - v[1].frame.z;
         if ORTHOGRAPHIC {
-            cell.planes[0].z = step;
+            cell.planes[0].z += step;
         } else {
-            cell.planes[0].z = step / v[1].eye.z;
+            cell.planes[0].z += step / v[1].eye.z;
         }
     }
     let e1 = v[1].frame - v[0].frame;
@@ -130,25 +140,25 @@ struct Reference {
 }
 
 fn cell_reference(v: array<Vertex, 4>, s: vec4<f32>, kind: f32) -> Reference {
-    let z = vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z);
+    // In the frame of the pivot, where depths keep their digits however far away the eye is.
+    let z = vec4<f32>(v[0].frame.z, v[1].frame.z, v[2].frame.z, v[3].frame.z);
     let farthest = max(max(z.x, z.y), max(z.z, z.w));
-    let nearest = max(min(min(z.x, z.y), min(z.z, z.w)), view.near);
+    let nearest = max(min(min(z.x, z.y), min(z.z, z.w)), view.near - view.forward.w);
     var reference: Reference;
     var origins = vec4<f32>(v[0].pixel, v[1].pixel);
-    reference.depth = z.x;
+    var index = 0u;
     reference.scalar = s.x;
     if kind == DEEP {
-        let far = farthest_vertex(z);
-        origins = vec4<f32>(v[far].pixel, v[far].pixel);
-        reference.depth = z[far];
-        reference.scalar = s[far];
+        index = farthest_vertex(vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z));
+        origins = vec4<f32>(v[index].pixel, v[index].pixel);
+        reference.scalar = s[index];
     }
     reference.origins = origins;
+    reference.depth = v[index].eye.z;
     let range = vec2<f32>(farthest, nearest);
-    if ORTHOGRAPHIC {
-        reference.w = reference.depth - range;
-    } else {
-        reference.w = (reference.depth - range) / range;
+    reference.w = z[index] - range;
+    if !ORTHOGRAPHIC {
+        reference.w /= max(range + view.forward.w, vec2<f32>(view.near));
     }
     reference.s = vec2<f32>(min(min(s.x, s.y), min(s.z, s.w)), max(max(s.x, s.y), max(s.z, s.w)));
     return reference;

@@ -138,6 +138,11 @@ const REFERENCE_TOLERANCE: f64 = 1e-8;
 
 /// The picture of the f64 ray caster.
 pub fn reference(mesh: &TetMesh, scene: &Scene) -> Vec<[f64; 4]> {
+    reference_beside(mesh, scene, [0.0; 2])
+}
+
+/// The same with every ray moved by some pixels.
+pub fn reference_beside(mesh: &TetMesh, scene: &Scene, by: [f64; 2]) -> Vec<[f64; 4]> {
     let view = view(scene);
     let caster = Caster::new(tetlux_reference::Scene {
         mesh,
@@ -148,7 +153,7 @@ pub fn reference(mesh: &TetMesh, scene: &Scene) -> Vec<[f64; 4]> {
     })
     .unwrap_or_else(|e| panic!("the reference: {e}"));
     let ray = |x: u32, y: u32| {
-        let (origin, direction) = view.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let (origin, direction) = view.ray(f64::from(x) + 0.5 + by[0], f64::from(y) + 0.5 + by[1]);
         Ray { origin, direction, start: view.near, end: f64::INFINITY }
     };
     caster.render(view.size[0], view.size[1], ray, |_| ())

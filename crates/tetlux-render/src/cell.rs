@@ -41,6 +41,8 @@ pub(crate) struct Cell {
 pub(crate) struct Reference {
     origins: [Vec2; 2],
     depth: f32,
+    /// Depth of the reference vertex from the pivot, which keeps its digits however far away the eye is.
+    level: f32,
     scalar: f32,
     w: [f32; 2],
     pub(crate) s: [f32; 2],
@@ -51,12 +53,14 @@ pub(crate) struct Segment {
     pub(crate) s_front: f32,
     pub(crate) s_back: f32,
     pub(crate) length: f32,
-    /// Depth of the middle in device units.
+    /// Depth of the middle from the pivot, in device units.
     pub(crate) depth: f32,
 }
 
 const DEEP_RATIO: f32 = 4.0;
 const STEEPEST: f32 = 1e20;
+const EDGE_ON: f32 = 1e-6;
+const NUDGE: Vec2 = Vec2::new(7.3e-5, 4.1e-5);
 
 impl Lens {
     pub(crate) fn vertex(&self, position: Vec3) -> Vertex {
@@ -84,19 +88,21 @@ impl Lens {
         }
     }
 
-    fn face_plane(&self, [a, b, c]: [&Vertex; 3], inward: f32, reference: &Vertex) -> Vec4 {
+    fn face_plane(&self, [a, b, c]: [&Vertex; 3], inward: f32, depth: f32, origin: &Vertex) -> Vec4 {
         let n = (b.frame - a.frame).cross(c.frame - a.frame);
-        let (side, least, depth) = if self.orthographic {
-            (n.z, 1e-12 * (n.x.abs() + n.y.abs()), 1.0)
+        let (side, scale, rise) = if self.orthographic {
+            (n.z, n.x.abs() + n.y.abs(), self.view.pixel)
         } else {
-            (n.dot(a.eye), 1e-12 * n.abs().dot(a.eye.abs()), reference.eye.z)
+            let reach = a.eye.abs().max(b.eye.abs()).max(c.eye.abs()).max_element();
+            (n.dot(a.eye), n.abs().element_sum() * reach, depth * self.view.pixel)
         };
-        let divisor = side.abs().max(least).max(1e-30);
+        let edge_on = side.abs() <= EDGE_ON * scale;
+        let divisor = (if edge_on { 1e-12 * scale } else { side.abs() }).max(1e-30);
         let toward = if side >= 0.0 { 1.0 } else { -1.0 };
-        let slope = n.truncate() * (depth * self.view.pixel * toward / divisor);
-        let offset = n.dot(reference.frame - a.frame) * toward / divisor;
         let limit = |x: f32| x.clamp(-STEEPEST, STEEPEST);
-        Vec4::new(limit(slope.x), limit(slope.y), limit(offset), toward * inward)
+        let slope = (n.truncate() * (rise * toward / divisor)).map(limit);
+        let offset = n.dot(origin.frame - a.frame) * toward / divisor + if edge_on { slope.dot(NUDGE) } else { 0.0 };
+        Vec4::new(slope.x, slope.y, limit(offset), toward * inward)
     }
 
     pub(crate) fn project_cell(&self, v: &[Vertex; 4], s: [f32; 4], parity: f32) -> Cell {
@@ -106,15 +112,16 @@ impl Lens {
             return Cell { planes: [Vec4::ZERO; 4], gradient: Vec3::ZERO, kind };
         }
         let reference = if kind == Kind::Deep { &v[farthest_vertex(z)] } else { &v[0] };
+        let depth = reference.eye.z;
         let mut planes = [
-            self.face_plane([&v[1], &v[2], &v[3]], -parity, reference),
-            self.face_plane([&v[0], &v[2], &v[3]], parity, reference),
-            self.face_plane([&v[0], &v[1], &v[3]], -parity, reference),
-            self.face_plane([&v[0], &v[1], &v[2]], parity, reference),
+            self.face_plane([&v[1], &v[2], &v[3]], -parity, depth, if kind == Kind::Deep { reference } else { &v[1] }),
+            self.face_plane([&v[0], &v[2], &v[3]], parity, depth, reference),
+            self.face_plane([&v[0], &v[1], &v[3]], -parity, depth, reference),
+            self.face_plane([&v[0], &v[1], &v[2]], parity, depth, reference),
         ];
         if kind == Kind::Plain {
             let step = v[0].frame.z - v[1].frame.z;
-            planes[0].z = if self.orthographic { step } else { step / v[1].eye.z };
+            planes[0].z += if self.orthographic { step } else { step / v[1].eye.z };
         }
         let e: [Vec3; 3] = std::array::from_fn(|i| v[i + 1].frame - v[0].frame);
         let volume = e[0].dot(e[1].cross(e[2]));
@@ -126,14 +133,24 @@ impl Lens {
     }
 
     pub(crate) fn cell_reference(&self, v: &[Vertex; 4], s: [f32; 4], kind: Kind) -> Reference {
-        let z = v.map(|vertex| vertex.eye.z);
+        let z = v.map(|vertex| vertex.frame.z);
+        let offset = self.view.forward[3];
         let (nearest, farthest) = bounds(z);
-        let (index, other) = if kind == Kind::Deep { (farthest_vertex(z), farthest_vertex(z)) } else { (0, 1) };
-        let depth = z[index];
-        let w = [farthest, nearest.max(self.view.near)]
-            .map(|z| if self.orthographic { depth - z } else { (depth - z) / z });
+        let far = farthest_vertex(v.map(|vertex| vertex.eye.z));
+        let (index, other) = if kind == Kind::Deep { (far, far) } else { (0, 1) };
+        let w = [farthest, nearest.max(self.view.near - offset)].map(|range| {
+            let step = z[index] - range;
+            if self.orthographic { step } else { step / (range + offset).max(self.view.near) }
+        });
         let (low, high) = bounds(s);
-        Reference { origins: [v[index].pixel, v[other].pixel], depth, scalar: s[index], w, s: [low, high] }
+        Reference {
+            origins: [v[index].pixel, v[other].pixel],
+            depth: v[index].eye.z,
+            level: z[index],
+            scalar: s[index],
+            w,
+            s: [low, high],
+        }
     }
 
     /// The segment of the ray through `at`, in pixels from the picture's middle; `None` where it misses the cell.
@@ -159,14 +176,14 @@ impl Lens {
         let in_plane = gradient.truncate().dot(across);
         let (length, s, depth) = if self.orthographic {
             let s = [front, back].map(|w| reference.scalar + in_plane - w * gradient.z);
-            (front - back, s, reference.depth - 0.5 * (front + back))
+            (front - back, s, reference.level - 0.5 * (front + back))
         } else {
             let direction = (at * self.view.pixel).extend(1.0);
             let along = gradient.dot(direction);
             let s = [front, back].map(|w| reference.scalar + reference.depth * (in_plane - w / (1.0 + w) * along));
-            let (near, far) = (reference.depth / (1.0 + front), reference.depth / (1.0 + back));
+            let closer = front / (1.0 + front) + back / (1.0 + back);
             let length = direction.length() * reference.depth * (front - back) / ((1.0 + front) * (1.0 + back));
-            (length, s, 0.5 * (near + far))
+            (length, s, reference.level - 0.5 * reference.depth * closer)
         };
         let [s_front, s_back] = s.map(|s| s.clamp(reference.s[0], reference.s[1]));
         Some(Segment { s_front, s_back, length, depth })

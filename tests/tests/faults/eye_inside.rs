@@ -88,6 +88,10 @@ fn nothing_before_the_near_plane_is_seen() {
     }
 }
 
+/// One cell reaches from a millionth of its size before the eye to all of it: its planes meet rays at inverse depths of
+/// up to a million, and the depth that is left of their differences is good to 5e-5.
+const HUGE_CELL: f64 = 5e-5;
+
 #[test]
 fn a_single_huge_cell_round_the_eye() {
     let points =
@@ -100,7 +104,7 @@ fn a_single_huge_cell_round_the_eye() {
         for camera in cameras(place, 0.0) {
             let scene = scene(&mesh, white(&[[0.0, 0.05], [4.0, 0.3], [12.0, 0.1]]), camera, [24, 20]);
             let body = Convex::tetrahedron(points);
-            assert_white(&format!("one cell, from {place}"), &mesh, &scene, &body, field, TOLERANCE);
+            assert_white(&format!("one cell, from {place}"), &mesh, &scene, &body, field, HUGE_CELL);
         }
     }
 }

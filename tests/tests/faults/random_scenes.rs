@@ -6,13 +6,17 @@ use tetlux_mesh::procedural::{Split, cuboid};
 use tetlux_optics::transfer::TransferFunction;
 use tetlux_scene::{Camera, Scene};
 use tetlux_tests::{
-    Random, Way, largest_error, mesh_of, orthographic, perspective, pixel_error, reference, render, scene, transfer,
+    FIELD, Random, Way, mesh_of, orthographic, perspective, pixel_error, reference, reference_beside, render, scene,
+    transfer,
 };
 
 /// Some twenty segments a pixel, each with cuts and weights in single precision.
 const TOLERANCE: f64 = 1e-4;
 
-const CASES: usize = 44;
+const CASES: u64 = 44;
+
+/// Width and height of the pictures.
+const SIDE: usize = 96;
 
 /// A grid displaced at random, surface included, with a smooth scalar.
 fn random_mesh(random: &mut Random) -> TetMesh {
@@ -40,7 +44,7 @@ fn random_transfer(random: &mut Random, [low, high]: [f64; 2], one_color: bool) 
         places.sort_by(f64::total_cmp);
         places
     };
-    let (color, opacity) = (places(1 + one_color as usize * 0 + 5), places(6));
+    let (color, opacity) = (places(6), places(6));
     let mut nodes = Vec::new();
     for s in color {
         let rgb = [0; 3].map(|_| random.between(0.0, 1.0));
@@ -85,39 +89,78 @@ fn random_camera(random: &mut Random) -> Camera {
 fn random_scene(seed: u64, one_color: bool) -> (TetMesh, Scene) {
     let mut random = Random::new(seed);
     let mesh = random_mesh(&mut random);
-    let range = mesh.scalar(tetlux_tests::FIELD, Default::default()).map_or([0.0, 1.0], |s| s.range);
+    let range = mesh.scalar(FIELD, Default::default()).map_or([0.0, 1.0], |s| s.range);
     let transfer = random_transfer(&mut random, range, one_color);
     let camera = random_camera(&mut random);
-    let mut scene = scene(&mesh, transfer, camera, [96, 96]);
+    let mut scene = scene(&mesh, transfer, camera, [SIDE as u32; 2]);
     scene.unit_distance = random.between(0.3, 3.0);
     (mesh, scene)
 }
 
-/// Renders a random scene and asserts every pixel; the largest error.
-fn assert_close(seed: u64, one_color: bool, way: Way) -> f64 {
-    let (mesh, scene) = random_scene(seed, one_color);
-    let truth = reference(&mesh, &scene);
-    let image = render(&mesh, &scene, way);
-    let max = largest_error(image.pixels(), &truth);
-    if max > TOLERANCE {
-        for (i, (&p, &t)) in
-            image.pixels().iter().zip(&truth).enumerate().filter(|(_, (p, t))| pixel_error(**p, **t) > TOLERANCE)
-        {
-            println!("seed {seed} pixel {} {}: {p:?} {t:?}", i % 96, i / 96);
+/// Scalars, normalised to the field's range, are good to this share of it: a few units of the last place.
+const SCALAR_ROUNDING: f64 = 3e-7;
+
+/// Positions in pictures of a hundred pixels are good to this many pixels: a few units of the last place.
+const PIXEL_ROUNDING: f64 = 1.5e-5;
+
+/// How far the truth itself moves where scalars and rays are moved by their rounding: more than any tolerance where a
+/// ray runs along a step or grazes a face.
+fn sensitivity(mesh: &TetMesh, scene: &Scene, truth: &[[f64; 4]]) -> Vec<f64> {
+    let [low, high] = scene.scalar.range;
+    let shifted = |shift: f64| {
+        let (color, opacity) = (scene.transfer.color_nodes(), scene.transfer.opacity_nodes());
+        let color: Vec<[f64; 4]> = color.iter().map(|n| [n.s + shift, n.rgb[0], n.rgb[1], n.rgb[2]]).collect();
+        let opacity: Vec<[f64; 2]> = opacity.iter().map(|n| [n.s + shift, n.opacity]).collect();
+        reference(mesh, &Scene { transfer: transfer(&color, &opacity), ..scene.clone() })
+    };
+    let by_scalars = [-1.0, 1.0].map(|sign| shifted(sign * SCALAR_ROUNDING * (high - low)));
+    let p = PIXEL_ROUNDING;
+    let by_pixels = [[-p, 0.0], [p, 0.0], [0.0, -p], [0.0, p]].map(|by| reference_beside(mesh, scene, by));
+    let moved = |pictures: &[Vec<[f64; 4]>], i: usize| {
+        pictures.iter().map(|picture| pixel_error(picture[i].map(|c| c as f32), truth[i])).fold(0.0, f64::max)
+    };
+    (0..truth.len()).map(|i| moved(&by_scalars, i) + moved(&by_pixels, i)).collect()
+}
+
+/// Renders random scenes and asserts every pixel, but for the few whose truth hangs on the last places of scalars or positions.
+fn assert_close(seeds: std::ops::Range<u64>, one_color: bool, way: Way) {
+    let (mut max, mut covered, mut excused) = (0.0f64, 0, 0);
+    for seed in seeds {
+        let (mesh, scene) = random_scene(seed, one_color);
+        let truth = reference(&mesh, &scene);
+        let image = render(&mesh, &scene, way);
+        covered += truth.iter().filter(|t| t[3] > 0.0).count();
+        let errors: Vec<f64> = image.pixels().iter().zip(&truth).map(|(&p, &t)| pixel_error(p, t)).collect();
+        let over: Vec<usize> = (0..errors.len()).filter(|&i| errors[i] > TOLERANCE).collect();
+        max = errors.iter().filter(|&&e| e <= TOLERANCE).fold(max, |m, &e| m.max(e));
+        if !over.is_empty() {
+            let sensitivity = sensitivity(&mesh, &scene, &truth);
+            for i in over {
+                assert!(
+                    errors[i] <= TOLERANCE + sensitivity[i],
+                    "seed {seed}, pixel ({}, {}): {:?}, not {:?}: off by {:.1e}, and rounding explains {:.1e}",
+                    i % SIDE,
+                    i / SIDE,
+                    image.pixels()[i],
+                    truth[i],
+                    errors[i],
+                    sensitivity[i]
+                );
+                excused += 1;
+            }
         }
     }
-    println!("seed {seed}: {max:.1e}");
-    max
+    println!("{way:?}: max {max:.1e} over {covered} pixels; {excused} hang on rounding");
+    assert!(covered > CASES as usize * SIDE * SIDE / 10, "the scenes are seen: {covered} pixels");
+    assert!(excused * 50_000 <= covered, "{excused} of {covered} pixels");
 }
 
 #[test]
 fn sorted_pixels_agree_with_the_reference() {
-    let worst = (0..CASES as u64).map(|seed| assert_close(seed, false, Way::CpuPixel)).fold(0.0, f64::max);
-    assert!(worst < TOLERANCE, "largest error {worst:.2e}");
+    assert_close(0..CASES, false, Way::CpuPixel);
 }
 
 #[test]
 fn one_luminance_needs_no_order() {
-    let worst = (100..100 + CASES as u64).map(|seed| assert_close(seed, true, Way::GpuNone)).fold(0.0, f64::max);
-    assert!(worst < TOLERANCE, "largest error {worst:.2e}");
+    assert_close(100..100 + CASES, true, Way::GpuNone);
 }
