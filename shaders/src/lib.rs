@@ -15,6 +15,7 @@ pub const MODULES: &[(&str, &str)] = &[
     ("lib::cell", include_str!("../lib/cell.wgsl")),
     ("lib::mesh", include_str!("../lib/mesh.wgsl")),
     ("lib::segment", include_str!("../lib/segment.wgsl")),
+    ("lib::silhouette", include_str!("../lib/silhouette.wgsl")),
     ("lib::transfer", include_str!("../lib/transfer.wgsl")),
     ("lib::view", include_str!("../lib/view.wgsl")),
     ("stages::draw", include_str!("../stages/draw.wgsl")),

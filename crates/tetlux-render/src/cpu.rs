@@ -2,10 +2,11 @@
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
-use tetlux_optics::transfer_f32::{Piece, Weights, integrate, piece_at};
+use tetlux_optics::transfer_f32::{integrate, piece_at};
 
-use crate::cell::{Cell, Kind, Lens, Reference, Vertex};
-use crate::device_mesh::{DeviceMesh, NEGATIVE};
+use crate::Job;
+use crate::cell::{Cell, Kind, Reference, Vertex};
+use crate::device_mesh::NEGATIVE;
 
 /// Rows of pixels that one core draws at a time.
 const BAND: usize = 8;
@@ -34,42 +35,31 @@ struct Fragment {
     color: [f32; 4],
 }
 
-/// What the picture is made of.
-pub(crate) struct Job<'a> {
-    pub(crate) mesh: &'a DeviceMesh,
-    pub(crate) lens: Lens,
-    pub(crate) pieces: &'a [Piece],
-    pub(crate) weights: Weights,
-    /// The cells to draw, nearest first.
-    pub(crate) order: &'a [u32],
-    /// Sort every pixel's fragments by depth.
-    pub(crate) sort_pixels: bool,
-    pub(crate) size: [u32; 2],
-}
-
 /// Draws a picture: premultiplied pixels, top row first.
-pub(crate) fn draw(job: &Job) -> Vec<[f32; 4]> {
+///
+/// If `sort_pixels`, every pixel's fragments are sorted by depth.
+pub(crate) fn draw(job: &Job, sort_pixels: bool) -> Vec<[f32; 4]> {
     let width = job.size[0] as usize;
     let mut pixels = vec![[0.0; 4]; width * job.size[1] as usize];
-    if job.sort_pixels {
+    if sort_pixels {
         // All fragments of a pixel are needed at once.
-        draw_batch(job, job.order, &mut pixels);
+        draw_batch(job, job.order, true, &mut pixels);
     } else {
         for batch in job.order.chunks(BATCH) {
-            draw_batch(job, batch, &mut pixels);
+            draw_batch(job, batch, false, &mut pixels);
         }
     }
     pixels
 }
 
-fn draw_batch(job: &Job, cells: &[u32], pixels: &mut [[f32; 4]]) {
+fn draw_batch(job: &Job, cells: &[u32], sort_pixels: bool, pixels: &mut [[f32; 4]]) {
     let projected: Vec<Option<Projected>> = cells.par_iter().map(|&c| project(job, c)).collect();
     let bands = bin(&projected, job.size[1] as usize);
     let width = job.size[0] as usize;
     pixels.par_chunks_mut(width * BAND).zip(bands).enumerate().for_each(|(band, (pixels, list))| {
         let cells = list.iter().filter_map(|&i| projected[i as usize].as_ref());
         let first_row = band * BAND;
-        if job.sort_pixels {
+        if sort_pixels {
             draw_sorted(job, cells, first_row, pixels);
         } else {
             draw_in_order(job, cells, first_row, pixels);

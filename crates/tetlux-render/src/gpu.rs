@@ -6,25 +6,12 @@ mod pipelines;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use tetlux_optics::transfer_f32::{Piece, Weights};
+use tetlux_optics::transfer_f32::Weights;
 use tetlux_scene::Device;
 
-use crate::RenderError;
-use crate::cell::Lens;
-use crate::device_mesh::DeviceMesh;
 use crate::stage::Stages;
+use crate::{Job, RenderError};
 use pipelines::{Pipelines, Variant};
-
-/// What the picture is made of.
-pub(crate) struct Job<'a> {
-    pub(crate) mesh: &'a DeviceMesh,
-    pub(crate) lens: Lens,
-    pub(crate) pieces: &'a [Piece],
-    pub(crate) weights: Weights,
-    /// The cells to draw, nearest first.
-    pub(crate) order: &'a [u32],
-    pub(crate) size: [u32; 2],
-}
 
 /// A graphics adapter, and its device and pipelines once they have been used.
 #[derive(Debug)]

@@ -40,7 +40,7 @@ pub use stage::{Stage, Stages};
 
 use tetlux_image::Image;
 use tetlux_mesh::TetMesh;
-use tetlux_optics::transfer_f32::{Weights, pieces};
+use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::Eye;
 use tetlux_scene::{Backend, Device, Integrator, Order, Plan, Scene};
 
@@ -55,6 +55,18 @@ pub struct Frame {
     pub image: Image,
     /// What was done, in order.
     pub stages: Vec<Stage>,
+}
+
+/// What a picture is made of.
+struct Job<'a> {
+    mesh: &'a DeviceMesh,
+    lens: Lens,
+    pieces: &'a [Piece],
+    weights: Weights,
+    /// The cells to draw, nearest first.
+    order: &'a [u32],
+    /// Width and height in pixels.
+    size: [u32; 2],
 }
 
 /// Renders by plan; holds the graphics device once one has been used.
@@ -103,26 +115,10 @@ impl Renderer {
             Integrator::Direct => Weights::Direct,
             Integrator::Average => Weights::Average,
         };
+        let job = Job { mesh: &device_mesh, lens, pieces: &pieces, weights, order: &order, size: view.size };
         let pixels = match plan.backend {
-            Backend::Gpu => {
-                let gpu = self.gpu.as_ref().ok_or(RenderError::NoAdapter)?;
-                let job =
-                    gpu::Job { mesh: &device_mesh, lens, pieces: &pieces, weights, order: &order, size: view.size };
-                gpu.draw(&job, &mut stages)?
-            }
-            Backend::Cpu | Backend::Auto => {
-                let sort_pixels = plan.order == Order::Pixel;
-                let job = cpu::Job {
-                    mesh: &device_mesh,
-                    lens,
-                    pieces: &pieces,
-                    weights,
-                    order: &order,
-                    sort_pixels,
-                    size: view.size,
-                };
-                stages.run("draw", || cpu::draw(&job))
-            }
+            Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(&job, &mut stages)?,
+            Backend::Cpu | Backend::Auto => stages.run("draw", || cpu::draw(&job, plan.order == Order::Pixel)),
         };
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
         Ok(Frame { image, stages: stages.into_vec() })

@@ -26,8 +26,9 @@ fn fifty_thin_layers_keep_their_thickness() {
     let mesh = mesh_of(&cuboid([1, 1, 50], Split::Six, bounds), |_| 0.5);
     let cameras = cameras(DVec3::new(0.5, 0.5, 1.0 / 128.0), 1.0);
     // Single precision knows the direction of a plane to 1e-7. Seen at an angle a, the depth at which a ray meets it is
-    // then off by 1e-7 / a^2 of the mesh, of which extinction 64 makes 64 times as much: a = 1, 1/2, and 1/50.
-    for ((what, camera), tolerance) in cameras.into_iter().zip([TOLERANCE, TOLERANCE, 1e-4, 1e-4, 2e-2, 2e-2]) {
+    // then off by up to 1e-7 / a^2 of the mesh, of which extinction 64 makes 64 times as much. The flattest planes are
+    // sides seen at 1/8 from above and aslant, and the layers themselves at 1/50 along them.
+    for ((what, camera), tolerance) in cameras.into_iter().zip([1e-4, 1e-4, 1e-4, 1e-4, 2e-2, 2e-2]) {
         let scene = scene(&mesh, white(&[[0.0, 64.0]]), camera, [48, 40]);
         let judged = assert_white(what, &mesh, &scene, &Convex::cuboid(bounds), |_| 0.5, tolerance);
         assert!(judged.covered > 40, "the layers are seen");

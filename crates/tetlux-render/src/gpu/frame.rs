@@ -2,8 +2,9 @@
 
 use wgpu::util::DeviceExt;
 
+use super::Open;
 use super::pipelines::{CELL_BYTES, Pipelines, TARGET};
-use super::{Job, Open};
+use crate::Job;
 
 /// Invocations a workgroup of the projection, as shaders/stages/project.wgsl has them.
 const WORKGROUP: u32 = 64;

@@ -1,0 +1,155 @@
+// What is drawn of a cell: its silhouette with a margin.
+//
+// The classes of projected tetrahedra (Shirley and Tuchman 1990): with one front face (1a) or one back face (1b) the
+// silhouette is a triangle, with two of each (2) a quadrilateral. Fragments find their segments from the planes of the
+// faces, so the silhouette need not be cut at the thick vertex; and since they reject what misses the cell, it may be
+// drawn a little too large. It must: rasterisers round vertices to 1/256 pixel, and a pixel lost beside a face that is
+// seen edge-on would be a visible fault.
+import package::lib::view::{Vertex, view, pixel_of};
+import package::lib::cell::{Cell, DEEP};
+
+// Pixels by which the silhouette is exceeded.
+const MARGIN = 0.03125;
+
+// Silhouettes wider than this, in pixels, are drawn as a rectangle along the axes, cut to the picture: rounding far from
+// the picture would eat the margin.
+const WIDEST = 8192.0;
+
+// Silhouettes narrower than this, in pixels, or with an edge shorter than SHORTEST, are drawn as a rectangle along their
+// longest edge: their corners are too sharp or too close to be moved outwards one by one. All degenerate projections
+// (a vertex over a vertex or an edge, faces edge-on) are among these or among the classes.
+const NARROWEST = 1.0;
+const SHORTEST = 0.01;
+
+struct Outline {
+    corners: array<vec2<f32>, 4>,
+    // 3 or 4; 0 if the faces are all front or all back, as rounding can make those of a sliver.
+    count: u32,
+}
+
+fn outline(cell: Cell, v: array<Vertex, 4>) -> Outline {
+    var fronts = 0u;
+    for (var i = 0u; i < 4u; i++) {
+        if cell.planes[i].w > 0.0 {
+            fronts |= 1u << i;
+        }
+    }
+    var result: Outline;
+    let count = countOneBits(fronts);
+    if count == 2u {
+        // Edges of the silhouette join the vertex opposite a front face with one opposite a back face.
+        let a = firstTrailingBit(fronts);
+        let b = firstLeadingBit(fronts);
+        let c = firstTrailingBit(~fronts & 15u);
+        let d = firstLeadingBit(~fronts & 15u);
+        result.corners = array<vec2<f32>, 4>(v[a].pixel, v[c].pixel, v[b].pixel, v[d].pixel);
+        result.count = 4u;
+    } else if count == 1u || count == 3u {
+        // The one face that looks the other way; the vertex opposite lies before or behind it.
+        let face = firstTrailingBit(select(~fronts & 15u, fronts, count == 1u));
+        let a = select(0u, 1u, face == 0u);
+        let b = select(1u, 2u, face <= 1u);
+        let c = select(2u, 3u, face <= 2u);
+        result.corners = array<vec2<f32>, 4>(v[a].pixel, v[b].pixel, v[c].pixel, v[c].pixel);
+        result.count = 3u;
+    }
+    return result;
+}
+
+// Corner k, 0 to 3 in cyclic order, of what is drawn, in pixels from the picture's middle.
+fn silhouette_corner(cell: Cell, v: array<Vertex, 4>, k: u32) -> vec2<f32> {
+    if cell.gradient.w == DEEP {
+        return boxed(deep_bounds(v), k);
+    }
+    var axis = vec2<f32>(0.0);
+    for (var i = 1u; i < 4u; i++) {
+        for (var j = 0u; j < i; j++) {
+            let edge = v[i].pixel - v[j].pixel;
+            if dot(edge, edge) > dot(axis, axis) {
+                axis = edge;
+            }
+        }
+    }
+    let extent = length(axis);
+    if extent > WIDEST {
+        let low = min(min(v[0].pixel, v[1].pixel), min(v[2].pixel, v[3].pixel));
+        let high = max(max(v[0].pixel, v[1].pixel), max(v[2].pixel, v[3].pixel));
+        return boxed(vec4<f32>(low, high), k);
+    }
+    let o = outline(cell, v);
+    if o.count == 0u {
+        return oblong(v, axis, extent, k);
+    }
+    // Twice the signed area.
+    let diagonal = o.corners[2] - o.corners[0];
+    let area = cross2(o.corners[1] - o.corners[0], diagonal) + cross2(diagonal, o.corners[3] - o.corners[0]);
+    var shortest = extent;
+    for (var i = 0u; i < o.count; i++) {
+        shortest = min(shortest, distance(o.corners[i], o.corners[(i + 1u) % o.count]));
+    }
+    if abs(area) < NARROWEST * extent || shortest < SHORTEST {
+        return oblong(v, axis, extent, k);
+    }
+    // Both edges at the corner move outwards by the margin.
+    let i = min(k, o.count - 1u);
+    let at = o.corners[i];
+    let e = normalize(at - o.corners[(i + o.count - 1u) % o.count]);
+    let f = normalize(o.corners[(i + 1u) % o.count] - at);
+    let outward = MARGIN * sign(area);
+    if dot(e, f) > 0.0 {
+        let normals = vec2<f32>(e.y + f.y, -e.x - f.x);
+        return at + normals * (outward / (1.0 + dot(e, f)));
+    }
+    return at + (e - f) * (outward / cross2(e, f));
+}
+
+fn cross2(a: vec2<f32>, b: vec2<f32>) -> f32 {
+    return a.x * b.y - a.y * b.x;
+}
+
+// Corner k of a unit square, in cyclic order.
+fn square(k: u32) -> vec2<f32> {
+    return vec2<f32>(f32((k + 1u) >> 1u & 1u), f32(k >> 1u));
+}
+
+// A rectangle along the longest edge.
+fn oblong(v: array<Vertex, 4>, axis: vec2<f32>, extent: f32, k: u32) -> vec2<f32> {
+    let along = select(vec2<f32>(1.0, 0.0), axis / max(extent, 1e-20), extent > 1e-3);
+    let across = vec2<f32>(-along.y, along.x);
+    var low = vec2<f32>(0.0);
+    var high = vec2<f32>(0.0);
+    for (var i = 1u; i < 4u; i++) {
+        let p = v[i].pixel - v[0].pixel;
+        let q = vec2<f32>(dot(along, p), dot(across, p));
+        low = min(low, q);
+        high = max(high, q);
+    }
+    let q = mix(low - MARGIN, high + MARGIN, square(k));
+    return v[0].pixel + along * q.x + across * q.y;
+}
+
+// A rectangle along the axes, cut to the picture.
+fn boxed(bounds: vec4<f32>, k: u32) -> vec2<f32> {
+    let limit = view.size * 0.5 + 1.0;
+    return mix(clamp(bounds.xy - MARGIN, -limit, limit), clamp(bounds.zw + MARGIN, -limit, limit), square(k));
+}
+
+// Pixel bounds of the part of a cell that lies beyond the near plane.
+fn deep_bounds(v: array<Vertex, 4>) -> vec4<f32> {
+    var bounds = vec4<f32>(1e30, 1e30, -1e30, -1e30);
+    for (var i = 0u; i < 4u; i++) {
+        if v[i].eye.z >= view.near {
+            bounds = vec4<f32>(min(bounds.xy, v[i].pixel), max(bounds.zw, v[i].pixel));
+        }
+        for (var j = 0u; j < i; j++) {
+            let a = v[i].eye;
+            let b = v[j].eye;
+            if (a.z < view.near) != (b.z < view.near) {
+                let t = clamp((view.near - a.z) / (b.z - a.z), 0.0, 1.0);
+                let p = pixel_of(vec3<f32>(a.xy + (b.xy - a.xy) * t, view.near));
+                bounds = vec4<f32>(min(bounds.xy, p), max(bounds.zw, p));
+            }
+        }
+    }
+    return bounds;
+}

@@ -1,0 +1,215 @@
+//! Functions with numbers in them: WGSL on the driver, Rust here, the same inputs bit for bit.
+
+use tetlux_optics::segment_f32::{mean_depth, opacity, weights_average, weights_direct};
+use tetlux_optics::transfer_f32::{self, Piece, Weights};
+use tetlux_shaders::compose;
+use tetlux_tests::{Random, transfer};
+
+use crate::device::run;
+
+/// What a driver's exp leaves: 2 units of the last place near 0, 62 at -80, where the result is 1e-35; Vulkan allows
+/// 3 + 2 |x|. Divisions may be off by 2.5 units, and multiplications and additions may be fused.
+const ABSOLUTE: f32 = 2e-6;
+
+/// The same of small results: weights of thin segments keep their digits.
+const RELATIVE: f32 = 1e-5;
+
+/// Below this results are denormal or nearly so, and a driver may flush them.
+const SMALLEST: f32 = 1e-37;
+
+/// Whether a shader's result is its twin's, and finite.
+fn agree(shader: f32, twin: f32) -> bool {
+    let error = (shader - twin).abs();
+    shader.is_finite() && error <= ABSOLUTE && (error <= RELATIVE * twin.abs() || error <= SMALLEST)
+}
+
+/// Every kind of number that bits can make, and log-uniform positive ones.
+fn any_number(random: &mut Random) -> f32 {
+    const SPECIAL: [f32; 18] = [
+        0.0,
+        -0.0,
+        1e-45,
+        1e-40,
+        f32::MIN_POSITIVE,
+        1e-30,
+        1e-7,
+        0.25,
+        1.0,
+        3.0,
+        1e15,
+        1e16,
+        f32::MAX,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::NAN,
+        -1.0,
+        -1e-40,
+    ];
+    match random.below(8) {
+        0 => SPECIAL[random.below(SPECIAL.len())],
+        1 => f32::from_bits(random.bits() as u32),
+        2 => 10f64.powf(random.between(-38.0, 38.0)) as f32,
+        3 | 4 => random.between(0.0, 10.0) as f32,
+        _ => 10f64.powf(random.between(-8.0, 6.0)) as f32,
+    }
+}
+
+const ROWS: usize = 200_000;
+
+const SEGMENT_TEST: &str = "
+@group(1) @binding(0) var<storage, read> inputs: array<u32>;
+@group(1) @binding(1) var<storage, read_write> outputs: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = id.x;
+    if 2u * i >= arrayLength(&inputs) {
+        return;
+    }
+    let a = bitcast<f32>(inputs[2u * i]);
+    let b = bitcast<f32>(inputs[2u * i + 1u]);
+    let direct = weights_direct(a, b);
+    let average = weights_average(a, b);
+    let x = 0.5 * (clean(a) + clean(b));
+    let rho = clean(b) / max(clean(a) + clean(b), 1e-30);
+    let rest = vec2<f32>(opacity(clean(a)), mean_depth(x, rho, clean(a), clean(b)));
+    for (var k = 0u; k < 3u; k++) {
+        outputs[8u * i + k] = bitcast<u32>(direct[k]);
+        outputs[8u * i + 3u + k] = bitcast<u32>(average[k]);
+    }
+    outputs[8u * i + 6u] = bitcast<u32>(rest.x);
+    outputs[8u * i + 7u] = bitcast<u32>(rest.y);
+}
+";
+
+/// The cleaning of inputs, which is private to the twin.
+fn clean(depth: f32) -> f32 {
+    if depth > 0.0 { depth.min(1e15) } else { 0.0 }
+}
+
+#[test]
+fn segment_weights() {
+    let mut random = Random::new(11);
+    let mut inputs: Vec<f32> = (0..2 * ROWS).map(|_| any_number(&mut random)).collect();
+    // Nearly constant extinction, where the closed forms have a removable singularity.
+    for pair in inputs[..ROWS / 2].chunks_exact_mut(2) {
+        pair[1] = pair[0] * (1.0 + random.between(-1e-6, 1e-6) as f32);
+    }
+    let outputs = run(&(compose("lib::segment").unwrap() + SEGMENT_TEST), &[], &inputs, ROWS, 8);
+    let names = ["alpha", "w_b", "w_f", "average alpha", "average w_b", "average w_f", "opacity", "mean depth"];
+    let mut worst = [0.0f32; 8];
+    for (pair, found) in inputs.chunks_exact(2).zip(outputs.chunks_exact(8)) {
+        let (a, b) = (pair[0], pair[1]);
+        let (back, front) = (clean(a), clean(b));
+        let (direct, average) = (weights_direct(a, b), weights_average(a, b));
+        let mean = mean_depth(0.5 * (back + front), front / (back + front).max(1e-30), back, front);
+        let twin = [direct[0], direct[1], direct[2], average[0], average[1], average[2], opacity(back), mean];
+        for k in 0..8 {
+            worst[k] = worst[k].max((found[k] - twin[k]).abs());
+            assert!(agree(found[k], twin[k]), "{} of ({a:e}, {b:e}): {} and {}", names[k], found[k], twin[k]);
+        }
+    }
+    println!("largest differences: {worst:.1?}");
+}
+
+const INTEGRATE_TEST: &str = "
+@group(1) @binding(0) var<storage, read> inputs: array<u32>;
+@group(1) @binding(1) var<storage, read_write> outputs: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = id.x;
+    if 5u * i >= arrayLength(&inputs) {
+        return;
+    }
+    let range = vec2<u32>(inputs[5u * i], inputs[5u * i + 1u]);
+    let s_front = bitcast<f32>(inputs[5u * i + 2u]);
+    let s_back = bitcast<f32>(inputs[5u * i + 3u]);
+    let result = integrate(range, s_front, s_back, bitcast<f32>(inputs[5u * i + 4u]));
+    for (var k = 0u; k < 4u; k++) {
+        outputs[4u * i + k] = bitcast<u32>(result[k]);
+    }
+}
+";
+
+fn bytes(pieces: &[Piece]) -> Vec<u8> {
+    pieces.iter().flat_map(|p| [p.low, p.high, p.s].concat()).flat_map(f32::to_ne_bytes).collect()
+}
+
+/// Up to 12 control points with steps and peaks; every piece linear.
+fn random_pieces(random: &mut Random) -> Vec<Piece> {
+    let mut places: Vec<f64> = (0..2 + random.below(11)).map(|_| random.between(-0.2, 1.2)).collect();
+    places.sort_by(f64::total_cmp);
+    let mut opacity: Vec<[f64; 2]> = Vec::new();
+    let mut color: Vec<[f64; 4]> = Vec::new();
+    for s in places {
+        let height = [0.0, 1.0, 30.0][random.below(3)];
+        opacity.push([s, random.between(0.0, 1.0) * height]);
+        if random.below(3) == 0 {
+            opacity.push([s, random.between(0.0, 1.0) * height]);
+        }
+        color.push([s, random.between(0.0, 1.0), random.between(0.0, 1.0), random.between(0.0, 2.0)]);
+    }
+    transfer_f32::pieces(&transfer(&color, &opacity), [0.0, 1.0], 1.0)
+}
+
+#[test]
+fn whole_segments() {
+    let source = compose("lib::transfer").unwrap() + INTEGRATE_TEST;
+    let mut random = Random::new(12);
+    let (rows, mut worst) = (10_000, 0.0f32);
+    for _ in 0..20 {
+        let pieces = random_pieces(&mut random);
+        let inputs: Vec<f32> = (0..rows)
+            .flat_map(|_| {
+                let front = match random.below(4) {
+                    // Exactly on a control point, and at the ends of the range.
+                    0 => pieces[random.below(pieces.len())].s[0].clamp(0.0, 1.0),
+                    1 => random.below(2) as f32,
+                    _ => random.between(0.0, 1.0) as f32,
+                };
+                let back = match random.below(4) {
+                    0 => front,
+                    1 => (front + random.between(-1e-6, 1e-6) as f32).clamp(0.0, 1.0),
+                    _ => random.between(0.0, 1.0) as f32,
+                };
+                let length = [0.0, 10f64.powf(random.between(-8.0, 1.0)) as f32][random.below(16).min(1)];
+                // The pieces that the segment meets, or all.
+                let met = [front.min(back), front.max(back)].map(|s| transfer_f32::piece_at(&pieces, s));
+                let range = if random.below(2) == 0 { met } else { [0, pieces.len() - 1] };
+                let [first, last] = range.map(|k| f32::from_bits(k as u32));
+                [first, last, front, back, length]
+            })
+            .collect();
+        let outputs = run(&source, &bytes(&pieces), &inputs, rows, 4);
+        for (row, found) in inputs.chunks_exact(5).zip(outputs.chunks_exact(4)) {
+            let range = [row[0], row[1]].map(|k| k.to_bits() as usize);
+            let twin = transfer_f32::integrate(&pieces, range, Weights::Direct, row[2], row[3], row[4]);
+            for k in 0..4 {
+                let error = (found[k] - twin[k]).abs();
+                worst = worst.max(error);
+                // A dozen pieces, each with the error of its weights.
+                let close = error <= 4.0 * ABSOLUTE && error <= 4.0 * RELATIVE * twin[k].abs() + SMALLEST;
+                assert!(found[k].is_finite() && close, "{row:?}: {found:?} and {twin:?}");
+            }
+        }
+    }
+    println!("largest difference {worst:.1e} over {} segments", 20 * rows);
+}
+
+#[test]
+fn a_planted_difference_is_seen() {
+    let good = weights_direct(0.7, 1.9);
+    for value in good {
+        assert!(agree(value, value));
+        for bad in [value * (1.0 + 3e-5), value + 3e-6, f32::NAN, f32::INFINITY, 0.0] {
+            assert!(!agree(bad, value), "{bad} for {value}");
+        }
+    }
+    assert!(agree(0.0, 1e-39) && !agree(0.0, 1e-30), "flushed to zero only where denormal");
+    // A shader with a wrong digit in a coefficient is caught by the same inputs.
+    let source = compose("lib::segment").unwrap().replace("0.37945005", "0.37955005") + SEGMENT_TEST;
+    let outputs = run(&source, &[], &[1.5, 1.5], 1, 8);
+    let twin = weights_direct(1.5, 1.5);
+    assert!(agree(outputs[0], twin[0]) && !agree(outputs[1], twin[1]) && !agree(outputs[2], twin[2]));
+}
