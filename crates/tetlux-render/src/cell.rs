@@ -89,7 +89,7 @@ impl Lens {
     }
 
     fn face_plane(&self, [a, b, c]: [&Vertex; 3], inward: f32, depth: f32, origin: &Vertex) -> Vec4 {
-        let n = (b.frame - a.frame).cross(c.frame - a.frame);
+        let n = face_normal(a.frame, b.frame, c.frame);
         let (side, scale, rise) = if self.orthographic {
             (n.z, n.x.abs() + n.y.abs(), self.view.pixel)
         } else {
@@ -211,6 +211,18 @@ impl Lens {
             }
         }
         bounds
+    }
+}
+
+fn face_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
+    let (ab, ac, bc) = (b - a, c - a, c - b);
+    let squares = [ab, ac, bc].map(|edge| edge.dot(edge));
+    if squares[0] > squares[1].max(squares[2]) {
+        ac.cross(bc)
+    } else if squares[1] > squares[2] {
+        ab.cross(bc)
+    } else {
+        ab.cross(ac)
     }
 }
 
