@@ -63,11 +63,26 @@ const EDGE_ON = 1e-6;
 // along the ray agree on which side of each it passes. No edge of a grid runs along this direction.
 const NUDGE = vec2<f32>(7.3e-5, 4.1e-5);
 
+// (b-a) x (c-a), of the two shortest edges: those of a sliver are nearly parallel otherwise, and cancel.
+fn face_normal(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
+    let ab = b - a;
+    let ac = c - a;
+    let bc = c - b;
+    let squares = vec3<f32>(dot(ab, ab), dot(ac, ac), dot(bc, bc));
+    if squares.x > max(squares.y, squares.z) {
+        return cross(ac, bc);
+    }
+    if squares.y > squares.z {
+        return cross(ab, bc);
+    }
+    return cross(ab, ac);
+}
+
 // Plane of the face a, b, c, its vertices in ascending order of index; `inward` is +1 if (b-a) x (c-a) points into the
 // cell and -1 if out of it; `depth` is that of w = 0; the third component is w at the pixel of `origin`, less
 // that of `origin` itself.
 fn face_plane(a: Vertex, b: Vertex, c: Vertex, inward: f32, depth: f32, origin: Vertex) -> vec4<f32> {
-    let n = cross(b.frame - a.frame, c.frame - a.frame);
+    let n = face_normal(a.frame, b.frame, c.frame);
     // Positive if the eye is on the side that n points away from.
     var side = dot(n, a.eye);
     let reach = max(max(abs(a.eye), abs(b.eye)), abs(c.eye));

@@ -50,7 +50,12 @@ fn main() -> ExitCode {
         // The figures that were printed say why.
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            // Most errors name their cause themselves: it is said once.
+            let message = error
+                .chain()
+                .map(ToString::to_string)
+                .reduce(|said, cause| if said.contains(&cause) { said } else { format!("{said}: {cause}") });
+            eprintln!("error: {}", message.unwrap_or_default());
             ExitCode::from(2)
         }
     }

@@ -1,7 +1,7 @@
 //! The wgpu back end: cells projected in a compute stage, drawn back to front, blended in 32-bit floating point.
 
-mod frame;
-mod pipelines;
+pub(crate) mod frame;
+pub(crate) mod pipelines;
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};

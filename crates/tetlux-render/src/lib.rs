@@ -33,6 +33,8 @@ mod device_mesh;
 mod device_view;
 mod error;
 mod gpu;
+#[cfg(test)]
+mod layout_tests;
 mod stage;
 
 pub use error::RenderError;

@@ -7,10 +7,10 @@ use tetlux_tests::{Convex, Way, mesh_of, orthographic, perspective, plan, scene,
 
 use crate::{TOLERANCE, assert_white};
 
-/// From above, aslant and along the layers.
+/// From above, aslant and nearly along the layers.
 fn cameras(center: DVec3, width: f64) -> Vec<(&'static str, Camera)> {
     let mut cameras = Vec::new();
-    for direction in [DVec3::new(0.1, 0.07, 1.0), DVec3::new(0.8, 0.3, 0.5), DVec3::new(1.0, 0.3, 0.02)] {
+    for direction in [DVec3::new(0.1, 0.07, 1.0), DVec3::new(0.8, 0.3, 0.5), DVec3::new(1.0, 0.3, 0.1)] {
         let position = center + direction.normalize() * (3.0 * width);
         cameras.push(("perspective", perspective(position, center, 30.0)));
         cameras.push(("orthographic", orthographic(position, center, 0.8 * width)));
@@ -24,14 +24,13 @@ fn fifty_thin_layers_keep_their_thickness() {
     // table of optical depths would round every layer to nothing, 1 - exp(-1) = 161/255.
     let bounds = [DVec3::ZERO, DVec3::new(1.0, 1.0, 1.0 / 64.0)];
     let mesh = mesh_of(&cuboid([1, 1, 50], Split::Six, bounds), |_| 0.5);
-    let cameras = cameras(DVec3::new(0.5, 0.5, 1.0 / 128.0), 1.0);
     // Single precision knows the direction of a plane to 1e-7. Seen at an angle a, the depth at which a ray meets it is
-    // then off by up to 1e-7 / a^2 of the mesh, of which extinction 64 makes 64 times as much. The flattest planes are
-    // sides seen at 1/8 from above and aslant, and the layers themselves at 1/50 along them.
-    for ((what, camera), tolerance) in cameras.into_iter().zip([1e-4, 1e-4, 1e-4, 1e-4, 2e-2, 2e-2]) {
+    // then off by up to 1e-7 / a^2 of the mesh: at 1/8 6e-6, of which extinction 64 makes 64 times as much at worst.
+    let dense = 1e-4;
+    for (what, camera) in cameras(DVec3::new(0.5, 0.5, 1.0 / 128.0), 1.0) {
         let scene = scene(&mesh, white(&[[0.0, 64.0]]), camera, [48, 40]);
-        let judged = assert_white(what, &mesh, &scene, &Convex::cuboid(bounds), |_| 0.5, tolerance);
-        assert!(judged.covered > 40, "the layers are seen");
+        let judged = assert_white(what, &mesh, &scene, &Convex::cuboid(bounds), |_| 0.5, dense);
+        assert!(judged.covered > 50, "the layers are seen: {} pixels", judged.covered);
     }
 }
 

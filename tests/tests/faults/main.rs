@@ -4,6 +4,8 @@
 //! and leaves at s_1 after a world length l has the optical depth of [`depth_of`](tetlux_tests::depth_of), and a white
 //! body the colour and alpha 1 - exp(-depth).
 
+#![allow(clippy::print_stdout, reason = "the figures that were measured")]
+
 mod classes;
 mod extremes;
 mod eye_inside;

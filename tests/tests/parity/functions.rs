@@ -109,7 +109,9 @@ fn segment_weights() {
             assert!(agree(found[k], twin[k]), "{} of ({a:e}, {b:e}): {} and {}", names[k], found[k], twin[k]);
         }
     }
-    println!("largest differences: {worst:.1?}");
+    for (name, worst) in names.iter().zip(worst) {
+        println!("{name}: at most {worst:.1e} apart");
+    }
 }
 
 const INTEGRATE_TEST: &str = "

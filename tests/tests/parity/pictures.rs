@@ -7,8 +7,9 @@ use tetlux_mesh::procedural::{Split, cuboid};
 use tetlux_scene::Scene;
 use tetlux_tests::{Random, Way, mesh_of, orthographic, perspective, render, scene, transfer};
 
-/// Arithmetic is the same in both; drivers fuse and reorder it.
-const TOLERANCE: f32 = 1e-5;
+/// Arithmetic is the same in both, but drivers fuse and reorder it, and where a ray grazes a face a peak of slope 160
+/// turns a unit of the last place into a hundred.
+const TOLERANCE: f32 = 5e-5;
 
 /// A displaced grid, in color, from outside and inside, both projections.
 fn scenes() -> Vec<(TetMesh, Scene)> {

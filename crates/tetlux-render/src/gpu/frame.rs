@@ -12,10 +12,10 @@ const WORKGROUP: u32 = 64;
 /// Laid out as the shader's `Batch` (shaders/lib/mesh.wgsl).
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub(super) struct Batch {
-    pub(super) last: u32,
-    pub(super) count: u32,
-    pub(super) unused: [u32; 2],
+pub(crate) struct Batch {
+    pub(crate) last: u32,
+    pub(crate) count: u32,
+    pub(crate) unused: [u32; 2],
 }
 
 /// Cells a batch: what one binding of projected cells, and one dispatch, can hold.

@@ -8,7 +8,7 @@ use crate::RenderError;
 pub(super) const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 /// Bytes of a projected cell: `Cell` of shaders/lib/cell.wgsl.
-pub(super) const CELL_BYTES: u64 = 80;
+pub(crate) const CELL_BYTES: u64 = 80;
 
 /// The values of the shaders' overrides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -1,0 +1,52 @@
+//! The structures uploaded here are laid out as the shaders have them.
+
+use std::mem::{offset_of, size_of};
+
+use naga::TypeInner;
+
+use crate::device_view::DeviceView;
+use crate::gpu::frame::Batch;
+use crate::gpu::pipelines::CELL_BYTES;
+
+/// (member, offset) of a structure of the drawing stage, and its size.
+fn layout(structure: &str) -> (Vec<(String, usize)>, usize) {
+    let source = tetlux_shaders::compose("stages::draw").unwrap();
+    let module = naga::front::wgsl::parse_str(&source).unwrap();
+    let found = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(structure));
+    let TypeInner::Struct { members, span } = &found.unwrap().1.inner else { panic!("{structure} is no structure") };
+    (members.iter().map(|m| (m.name.clone().unwrap(), m.offset as usize)).collect(), *span as usize)
+}
+
+fn named<const N: usize>(members: [(&str, usize); N]) -> Vec<(String, usize)> {
+    members.map(|(name, offset)| (name.to_string(), offset)).to_vec()
+}
+
+#[test]
+fn the_view() {
+    let ours = named([
+        ("right", offset_of!(DeviceView, right)),
+        ("down", offset_of!(DeviceView, down)),
+        ("forward", offset_of!(DeviceView, forward)),
+        ("pivot_high", offset_of!(DeviceView, pivot_high)),
+        ("pivot_low", offset_of!(DeviceView, pivot_low)),
+        ("size", offset_of!(DeviceView, size)),
+        ("pixel", offset_of!(DeviceView, pixel)),
+        ("near", offset_of!(DeviceView, near)),
+    ]);
+    assert_eq!(layout("View"), (ours, size_of::<DeviceView>()));
+}
+
+#[test]
+fn the_batch() {
+    let ours = named([
+        ("last", offset_of!(Batch, last)),
+        ("count", offset_of!(Batch, count)),
+        ("unused", offset_of!(Batch, unused)),
+    ]);
+    assert_eq!(layout("Batch"), (ours, size_of::<Batch>()));
+}
+
+#[test]
+fn a_projected_cell() {
+    assert_eq!(layout("Cell").1 as u64, CELL_BYTES);
+}

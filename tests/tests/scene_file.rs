@@ -1,0 +1,210 @@
+//! Scene files: what is wrong is told with its line and its remedy, what is not said has a default.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test's helpers fail and tell like the test")]
+
+use std::fs;
+use std::path::Path;
+
+use glam::DVec3;
+use tetlux_mesh::procedural::{Split, cuboid};
+use tetlux_mesh::{Field, TetMesh};
+use tetlux_scene::{Backend, Integrator, Method, Order, Projection, SceneFile, UnitDistance};
+
+const TRANSFER: &str = "[transfer]\ncolor = [[0.0, 1.0, 1.0, 1.0]]\nopacity = [[0.0, 1.0]]\n";
+
+/// What the parser says to a text that is wrong.
+fn error(text: &str) -> String {
+    SceneFile::parse("a.toml", text).map(|_| panic!("accepted:\n{text}")).unwrap_or_else(|e| e.to_string())
+}
+
+/// A scene of the usual transfer function with more after it: that begins in line 4.
+fn error_after(rest: &str) -> String {
+    error(&format!("{TRANSFER}{rest}"))
+}
+
+fn assert_says(message: &str, parts: &[&str]) {
+    assert!(!message.contains('\n'), "one line: {message}");
+    for part in parts {
+        assert!(message.contains(part), "\"{part}\" is not in: {message}");
+    }
+}
+
+#[test]
+fn unknown_keys_are_named_with_their_line() {
+    assert_says(&error_after("[image]\nsizes = [10, 10]"), &["a.toml:5:", "sizes", "size"]);
+    assert_says(&error_after("[[camera]]\n\nview_angel = 30.0"), &["a.toml:6:", "view_angel", "view_angle"]);
+    assert_says(&error_after("[light]\ncolor = 1"), &["a.toml:4:", "light"]);
+    assert_says(&error("[transfer]\ncolours = []"), &["a.toml:2:", "colours"]);
+}
+
+#[test]
+fn wrong_types_are_named_with_their_line() {
+    for (rest, line) in [
+        ("[image]\nsize = \"large\"", 5),
+        ("[image]\nsize = [10]", 5),
+        ("[image]\nsize = [10, -10]", 5),
+        ("[field]\nname = 3", 5),
+        ("[[camera]]\nposition = [0.0, 1.0]", 5),
+        ("[[camera]]\nview_up = \"z\"", 5),
+        ("[method]\nbackend = \"cuda\"", 5),
+        ("[method]\n\norder = \"nearest\"", 6),
+        ("[method]\nmax_error = \"small\"", 5),
+        ("not toml", 4),
+        ("[image", 4),
+    ] {
+        assert_says(&error_after(rest), &[&format!("a.toml:{line}:")]);
+    }
+    // A name that is not on the list is answered with the list.
+    assert_says(&error_after("[method]\norder = \"nearest\""), &["nearest", "centroid", "pixel"]);
+}
+
+#[test]
+fn impossible_values_are_named_with_key_and_line() {
+    for (rest, line, key) in [
+        ("[mesh]\nsplit = 4", 5, "split"),
+        ("[image]\nsize = [0, 10]", 5, "size"),
+        ("[image]\nsize = [10, 40000]", 5, "size"),
+        ("[image]\nbackground = [0.0, -0.1, 0.0]", 5, "background"),
+        ("[image]\nbackground = [0.0, nan, 0.0]", 5, "background"),
+        ("[[camera]]\nview_angle = 0.0", 5, "view_angle"),
+        ("[[camera]]\nview_angle = 180.0", 5, "view_angle"),
+        ("[[camera]]\nparallel_scale = -1.0", 5, "parallel_scale"),
+        ("[[camera]]\nparallel_scale = 1.0\nview_angle = 30.0", 6, "view_angle"),
+        ("[[camera]]\nnear = -0.5", 5, "near"),
+        ("[[camera]]\nnear = inf", 5, "near"),
+        ("[[camera]]\nposition = [0.0, 0.0, 0.0]\ndirection = [1.0, 0.0, 0.0]", 4, "camera"),
+        ("[method]\nmax_error = 0.0", 5, "max_error"),
+        ("[method]\nmax_error = nan", 5, "max_error"),
+    ] {
+        assert_says(&error_after(rest), &[&format!("a.toml:{line}:"), key]);
+    }
+}
+
+#[test]
+fn impossible_transfer_functions_are_named_with_their_line() {
+    let color = "color = [[0.0, 1.0, 1.0, 1.0]]";
+    for (text, line, word) in [
+        (format!("{color}\nopacity = [[1.0, 1.0],\n[0.0, 1.0]]"), 4, "opacity"),
+        (format!("{color}\nopacity = [[0.0, -1.0]]"), 3, "-1"),
+        (format!("{color}\nopacity = [[0.0, inf]]"), 3, "inf"),
+        (format!("{color}\nopacity = [[nan, 1.0]]"), 3, "NaN"),
+        (format!("{color}\nopacity = [[0.0, 1.0], [0.0, 2.0],\n\n [0.0, 3.0]]"), 5, "third"),
+        ("color = [[0.0, 1.0, -1.0, 1.0]]\nopacity = [[0.0, 1.0]]".into(), 2, "color"),
+        (format!("{color}\nopacity = [[0.0, 1.0]]\nunit_distance = 0.0"), 4, "unit_distance"),
+        (format!("{color}\nopacity = [[0.0, 1.0]]\nrange = [1.0, 1.0]"), 4, "range"),
+        (format!("{color}\nopacity = [[0.0, 1.0]]\nrange = [0.0, inf]"), 4, "range"),
+        (format!("{color}\nopacity = [[0.0, 1.0]]\npreset = \"p.json\""), 1, "preset"),
+        (color.into(), 1, "opacity"),
+        ("color = []\nopacity = [[0.0, 1.0]]".into(), 1, "color"),
+        (format!("{color}\nopacity = []"), 1, "opacity"),
+    ] {
+        assert_says(&error(&format!("[transfer]\n{text}\n")), &[&format!("a.toml:{line}:"), word]);
+    }
+    assert_says(&error("[image]\nsize = [10, 10]\n"), &["a.toml:", "transfer"]);
+}
+
+#[test]
+fn what_is_not_said_has_a_default() {
+    let file = SceneFile::parse("folder/a.toml", TRANSFER).unwrap();
+    assert_eq!((file.size, file.background, file.display_space), ([800, 800], [0.0; 3], false));
+    assert_eq!((file.mesh.clone(), file.field.clone(), file.split), (None, None, None));
+    assert_eq!(file.unit_distance, UnitDistance::MeanEdge);
+    let method = Method { backend: Backend::Auto, order: Order::Auto, integrator: Integrator::Direct, max_error: 1e-3 };
+    assert_eq!(file.method, method);
+    let mesh = mesh(vec![("only", 1, &|p: DVec3| p.x)]);
+    let scene = file.scene(&mesh, 0).unwrap();
+    assert_eq!((scene.scalar.name.as_str(), scene.unit_distance), ("only", mesh.mean_edge_length()));
+    // Framed: perspective, the mesh's middle in the middle, all of it in the picture.
+    assert_eq!(scene.camera.projection, Projection::Perspective { view_angle: 30.0 });
+    let view = scene.camera.view(scene.size).unwrap();
+    for point in 0..mesh.points().len() as u32 {
+        let p = view.to_eye(mesh.world(point));
+        assert!(view.frustum().iter().all(|(n, c)| n.dot(p) + c > 0.0), "{p}");
+    }
+    // Paths are relative to the scene file.
+    let with_mesh = SceneFile::parse("folder/a.toml", &format!("{TRANSFER}[mesh]\npath = \"b.vtu\"")).unwrap();
+    assert_eq!(with_mesh.mesh.as_deref(), Some(Path::new("folder/b.vtu")));
+}
+
+type Sampler<'a> = (&'a str, usize, &'a dyn Fn(DVec3) -> f64);
+
+fn mesh(fields: Vec<Sampler>) -> TetMesh {
+    let parts = cuboid([2, 2, 2], Split::Six, [DVec3::ZERO, DVec3::ONE]);
+    let values = |components: usize, f: &dyn Fn(DVec3) -> f64| {
+        parts.points.iter().flat_map(|&p| vec![f(p); components]).collect()
+    };
+    let fields = fields.into_iter().map(|(name, n, f)| Field::point(name, n, values(n, f))).collect();
+    TetMesh::assemble(&parts.points, &parts.cells, fields).unwrap()
+}
+
+/// What the scene says to a mesh.
+fn refusal(rest: &str, mesh: &TetMesh, camera: usize) -> String {
+    let file = SceneFile::parse("a.toml", &format!("{TRANSFER}{rest}")).unwrap();
+    file.scene(mesh, camera).map(|_| panic!("accepted: {rest}")).unwrap_or_else(|e| e.to_string())
+}
+
+#[test]
+fn fields_that_cannot_be_had() {
+    let two = mesh(vec![("heat", 1, &|p| p.x), ("flow", 3, &|p| p.y), ("void", 1, &|_| f64::NAN)]);
+    assert_says(&refusal("[field]\nname = \"head\"", &two, 0), &["\"head\"", "\"heat\"", "\"flow\"", "\"void\""]);
+    assert_says(&refusal("[field]\nname = \"void\"", &two, 0), &["\"void\"", "no finite value", "27", "\"heat\""]);
+    assert_says(&refusal("[field]\nname = \"flow\"\ncomponent = 3", &two, 0), &["\"flow\"", "3"]);
+    assert_says(&refusal("[field]\nname = \"heat\"", &two, 1), &["camera 1", "a.toml"]);
+    assert!(SceneFile::parse("a.toml", &format!("{TRANSFER}[field]\nname = \"flow\"\ncomponent = 2")).is_ok());
+}
+
+#[test]
+fn cameras_that_see_nothing() {
+    let mesh = mesh(vec![("heat", 1, &|p| p.x)]);
+    let same = "[[camera]]\nposition = [1.0, 0.0, 0.0]\nfocal_point = [1.0, 0.0, 0.0]";
+    assert_says(&refusal(same, &mesh, 0), &["camera", "focal point"]);
+    let up = "[[camera]]\nposition = [0.0, 0.0, 9.0]\nfocal_point = [0.0, 0.0, 0.0]\nview_up = [0.0, 0.0, 1.0]";
+    assert_says(&refusal(up, &mesh, 0), &["camera", "view up"]);
+}
+
+#[test]
+fn files_and_presets_that_cannot_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = folder.path().join("none.toml");
+    assert_says(&SceneFile::read(&missing).unwrap_err().to_string(), &["none.toml"]);
+    let mesh = mesh(vec![("heat", 1, &|p| p.x)]);
+    let scene = folder.path().join("scene.toml");
+    fs::write(&scene, "[transfer]\npreset = \"preset.json\"\n").unwrap();
+    let file = SceneFile::read(&scene).unwrap();
+    let said = |text: Option<&str>| {
+        if let Some(text) = text {
+            fs::write(folder.path().join("preset.json"), text).unwrap();
+        }
+        file.scene(&mesh, 0).map(|_| panic!("accepted: {text:?}")).unwrap_or_else(|e| e.to_string())
+    };
+    for text in [
+        None,
+        Some(""),
+        Some("{"),
+        Some("[]"),
+        Some("[{\"Name\": \"x\"}]"),
+        Some("<xml"),
+        Some("[{\"RGBPoints\": [0, 1]}]"),
+    ] {
+        assert_says(&said(text), &["preset.json"]);
+    }
+    // And one that can: two nodes, stretched to the field's range.
+    fs::write(folder.path().join("preset.json"), r#"[{"Name": "p", "RGBPoints": [0, 0, 0, 0, 5, 1, 1, 1]}]"#).unwrap();
+    let scene = file.scene(&mesh, 0).unwrap();
+    assert_eq!(scene.transfer.color_nodes().last().unwrap().s, 1.0);
+}
+
+#[test]
+fn the_shipped_scenes_are_read() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes"));
+    let mut count = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let file = SceneFile::read(&path).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(file.name, path.display().to_string());
+            count += 1;
+        }
+    }
+    assert!(count >= 6, "{count} scenes");
+}

@@ -1,0 +1,263 @@
+//! The program as a user runs it: what it writes, what it says, and how it ends.
+
+#![allow(clippy::unwrap_used, reason = "a test's helpers fail like the test")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+use tetlux_image::{Image, read_exr, write_exr};
+
+/// Runs the program in a folder.
+fn run(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_xtask")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// What the program said on standard error; a software driver's own remark without a desktop is not the program's.
+fn stderr(output: &Output) -> String {
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    text.lines().filter(|line| !line.contains("XDG_RUNTIME_DIR")).collect::<Vec<_>>().join("\n")
+}
+
+/// Asserts exit status 2 and one line that begins with "error: " and holds all parts; gives it.
+fn assert_fails(output: &Output, parts: &[&str]) -> String {
+    let message = stderr(output);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.starts_with("error: ") && message.lines().count() == 1, "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+    for part in parts {
+        assert!(message.contains(part), "\"{part}\" is not in: {message}");
+    }
+    message
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+/// Two tetrahedra with a point field and a vector field.
+const VTU: &str = r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">
+<UnstructuredGrid><Piece NumberOfPoints="5" NumberOfCells="2">
+<PointData>
+  <DataArray type="Float64" Name="heat" format="ascii">0 1 2 3 4</DataArray>
+  <DataArray type="Float64" Name="flow" NumberOfComponents="3" format="ascii">3 4 0 0 0 0 0 0 0 0 0 0 0 0 1</DataArray>
+</PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
+  0 0 0  1 0 0  0 1 0  0 0 1  1 1 1
+</DataArray></Points>
+<Cells>
+  <DataArray type="Int32" Name="connectivity" format="ascii">0 1 2 3  1 2 3 4</DataArray>
+  <DataArray type="Int32" Name="offsets" format="ascii">4 8</DataArray>
+  <DataArray type="UInt8" Name="types" format="ascii">10 10</DataArray>
+</Cells></Piece></UnstructuredGrid></VTKFile>"#;
+
+const SCENE: &str = r#"
+[mesh]
+path = "mesh.vtu"
+[field]
+name = "heat"
+[transfer]
+color = [[0.0, 0.2, 0.4, 1.0], [4.0, 1.0, 0.5, 0.1]]
+opacity = [[0.0, 0.5], [4.0, 3.0]]
+[image]
+size = [40, 30]
+"#;
+
+/// A folder with `mesh.vtu` and `scene.toml`.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("mesh.vtu"), VTU).unwrap();
+    fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+    folder
+}
+
+/// Every file below a folder.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() { found.extend(files(&path)) } else { found.push(path) }
+    }
+    found
+}
+
+#[test]
+fn the_built_in_scene_is_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["render", "--size", "64x64", "--output", "made/here/wing.png", "--json", "made/wing.json"];
+    let output = run(folder.path(), &args);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for part in ["plan", "backend", "order", "cells", "draw", "wing.png", "wing.exr"] {
+        assert!(stdout(&output).contains(part), "\"{part}\" is not in:\n{}", stdout(&output));
+    }
+    let png = fs::read(folder.path().join("made/here/wing.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n"));
+    let image = read_exr(&folder.path().join("made/here/wing.exr")).unwrap();
+    assert_eq!((image.width(), image.height()), (64, 64));
+    assert!(image.pixels().iter().filter(|p| p[3] > 0.01).count() > 300, "the wing is seen");
+    let json = json(&folder.path().join("made/wing.json"));
+    assert_eq!(json["size"], serde_json::json!([64, 64]));
+    assert!(json["cells"].as_u64().unwrap() > 50_000 && json["stages"].as_array().unwrap().len() > 2, "{json}");
+    assert_eq!(files(folder.path()).len(), 3, "nothing else is written");
+}
+
+#[test]
+fn flags_override_the_scene() {
+    let folder = folder();
+    let args = ["render", "scene.toml", "--field", "flow", "--backend", "cpu", "--size", "20x10", "--json", "f.json"];
+    let output = run(folder.path(), &args);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let json = json(&folder.path().join("f.json"));
+    assert_eq!((&json["size"], &json["backend"]), (&serde_json::json!([20, 10]), &serde_json::json!("cpu")));
+    assert!(folder.path().join("out/scene.png").exists());
+    assert_fails(
+        &run(folder.path(), &["render", "scene.toml", "--field", "cold"]),
+        &["\"cold\"", "\"heat\"", "\"flow\""],
+    );
+    assert_fails(&run(folder.path(), &["render", "scene.toml", "--unit-distance", "0"]), &["--unit-distance", "0"]);
+    assert_fails(&run(folder.path(), &["render", "scene.toml", "--backend", "gpu", "--order", "pixel"]), &["pixel"]);
+    for bad in [["--size", "64"], ["--backend", "cuda"], ["--split", "7"], ["--nonsense", "1"]] {
+        let output = run(folder.path(), &["render", "scene.toml", bad[0], bad[1]]);
+        assert_eq!(output.status.code(), Some(2), "{bad:?}");
+        assert!(stderr(&output).contains(bad[0]), "{}", stderr(&output));
+    }
+}
+
+/// An image with something in it.
+fn image() -> Image {
+    let pixels = (0..12).map(|i| [0.01 * i as f32, 0.5, 0.25, 0.75]).collect();
+    Image::from_pixels(4, 3, pixels).unwrap()
+}
+
+#[test]
+fn two_pictures_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    write_exr(&image(), &path("a.exr"), None).unwrap();
+    write_exr(&image(), &path("b.exr"), None).unwrap();
+    let output = run(folder.path(), &["compare", "a.exr", "b.exr", "--json", "same.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(json(&path("same.json"))["error"]["max"], 0.0);
+
+    let mut planted = image();
+    planted.pixels_mut()[7][2] += 0.125;
+    write_exr(&planted, &path("b.exr"), None).unwrap();
+    let output = run(folder.path(), &["compare", "a.exr", "b.exr", "--json", "other.json"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let error = json(&path("other.json"))["error"].clone();
+    assert_eq!((&error["max"], &error["worst"]), (&serde_json::json!(0.125), &serde_json::json!([3, 1])));
+    assert!(path("out/b-difference.png").exists());
+    // The same difference is within a larger budget.
+    assert_eq!(run(folder.path(), &["compare", "a.exr", "b.exr", "--max-error", "0.2"]).status.code(), Some(0));
+
+    for (bytes, name) in [(&b""[..], "empty.exr"), (b"\x89PNG not an EXR", "magic.exr")] {
+        fs::write(path(name), bytes).unwrap();
+        assert_fails(&run(folder.path(), &["compare", "a.exr", name]), &[name]);
+    }
+    let whole = fs::read(path("a.exr")).unwrap();
+    fs::write(path("cut.exr"), &whole[..whole.len() / 2]).unwrap();
+    assert_fails(&run(folder.path(), &["compare", "a.exr", "cut.exr"]), &["cut.exr"]);
+    write_exr(&Image::new(3, 4).unwrap(), &path("size.exr"), None).unwrap();
+    assert_fails(&run(folder.path(), &["compare", "a.exr", "size.exr"]), &["4 x 3", "3 x 4"]);
+    assert_fails(&run(folder.path(), &["compare", "a.exr"]), &["a.exr"]);
+    let message = assert_fails(&run(folder.path(), &["compare", "a.exr", "none.exr"]), &["none.exr"]);
+    assert_eq!(message.matches("os error").count(), 1, "the cause is told once: {message}");
+}
+
+#[test]
+fn a_scene_is_compared_with_the_reference() {
+    let folder = folder();
+    let output = run(folder.path(), &["compare", "scene.toml", "--output", "seen", "--json", "e.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    let json = json(&folder.path().join("e.json"));
+    assert!(json["error"]["max"].as_f64().unwrap() < 1e-5 && json["error"]["covered"].as_u64().unwrap() > 50, "{json}");
+    for name in ["scene.exr", "scene-reference.exr", "scene-difference.png"] {
+        assert!(folder.path().join("seen").join(name).exists(), "{name}");
+    }
+    // No picture in single precision is within a billionth.
+    let output = run(folder.path(), &["compare", "scene.toml", "--max-error", "1e-9"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stdout(&output).contains("PAST"), "{}", stdout(&output));
+}
+
+#[test]
+fn broken_meshes_leave_earlier_pictures_alone() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    fs::create_dir(path("out")).unwrap();
+    for name in ["out/scene.png", "out/scene.exr", "out/scene.json"] {
+        fs::write(path(name), "earlier").unwrap();
+    }
+    let truncated = &VTU[..VTU.len() / 2];
+    for (name, contents) in
+        [("cut.vtu", truncated), ("empty.vtu", ""), ("magic.vtu", "OFF\n1 2 3\n"), ("none.vtu", "-")]
+    {
+        if contents != "-" {
+            fs::write(path(name), contents).unwrap();
+        }
+        let before = files(folder.path());
+        for command in ["render", "compare"] {
+            let args = [command, "scene.toml", "--mesh", name, "--json", "out/scene.json"];
+            assert_fails(&run(folder.path(), &args), &[name]);
+        }
+        let message = assert_fails(&run(folder.path(), &["info", name, "--json", "out/scene.json"]), &[name]);
+        assert!(message.matches("os error").count() <= 1, "the cause is told once: {message}");
+        assert_eq!(files(folder.path()), before, "{name}: nothing is written");
+        for kept in ["out/scene.png", "out/scene.exr", "out/scene.json"] {
+            assert_eq!(fs::read_to_string(path(kept)).unwrap(), "earlier", "{name}: {kept}");
+        }
+    }
+    assert_fails(&run(folder.path(), &["render", "nowhere.toml"]), &["nowhere.toml"]);
+    fs::write(path("bad.toml"), "[transfer]\ncolor = 3\n").unwrap();
+    assert_fails(&run(folder.path(), &["render", "bad.toml"]), &["bad.toml:2:"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_named() {
+    let folder = folder();
+    // A file where a folder is needed: not writable for any user.
+    fs::write(folder.path().join("file"), "kept").unwrap();
+    let output = run(folder.path(), &["render", "scene.toml", "--output", "file/picture.png"]);
+    assert_fails(&output, &["file"]);
+    let output = run(folder.path(), &["compare", "scene.toml", "--output", "file"]);
+    assert_fails(&output, &["file"]);
+    assert_eq!(fs::read_to_string(folder.path().join("file")).unwrap(), "kept");
+}
+
+#[test]
+fn every_command_has_help_with_examples() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in ["render", "compare", "info"] {
+        let output = run(folder.path(), &[command, "--help"]);
+        assert!(output.status.success());
+        let text = stdout(&output);
+        assert!(text.contains("Examples:") && text.contains(&format!("cargo xtask {command}")), "{text}");
+    }
+    let output = run(folder.path(), &["--help"]);
+    for command in ["render", "compare", "info", "test"] {
+        assert!(stdout(&output).contains(command), "{command}");
+    }
+    assert_eq!(run(folder.path(), &[]).status.code(), Some(2));
+}
+
+#[test]
+fn info_tells_what_a_mesh_holds() {
+    let folder = folder();
+    let output = run(folder.path(), &["info", "mesh.vtu", "--json", "mesh.json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for part in ["2 tetrahedra", "\"heat\"", "0 to 4", "\"flow\"", "0 to 5"] {
+        assert!(stdout(&output).contains(part), "\"{part}\" is not in:\n{}", stdout(&output));
+    }
+    let json = json(&folder.path().join("mesh.json"));
+    assert_eq!((&json["points"], &json["tetrahedra"]), (&serde_json::json!(5), &serde_json::json!(2)));
+    // A corner of the unit cube, 1/6, and the regular tetrahedron behind its face, of volume 1/3.
+    assert!((json["volume"].as_f64().unwrap() - 0.5).abs() < 1e-12, "{json}");
+    // Eight faces, two of them shared.
+    assert_eq!((&json["boundary_faces"], &json["components"]), (&serde_json::json!(6), &serde_json::json!(1)));
+    assert_eq!(json["fields"][1]["ranges"][0], serde_json::json!([0.0, 5.0]));
+}
