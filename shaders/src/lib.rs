@@ -14,8 +14,10 @@
 pub const MODULES: &[(&str, &str)] = &[
     ("lib::cell", include_str!("../lib/cell.wgsl")),
     ("lib::mesh", include_str!("../lib/mesh.wgsl")),
+    ("lib::published", include_str!("../lib/published.wgsl")),
     ("lib::segment", include_str!("../lib/segment.wgsl")),
     ("lib::silhouette", include_str!("../lib/silhouette.wgsl")),
+    ("lib::symmetric", include_str!("../lib/symmetric.wgsl")),
     ("lib::transfer", include_str!("../lib/transfer.wgsl")),
     ("lib::view", include_str!("../lib/view.wgsl")),
     ("stages::draw", include_str!("../stages/draw.wgsl")),

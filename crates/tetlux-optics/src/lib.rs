@@ -13,8 +13,15 @@
 //! | [`transfer`] | what a 1D transfer function is |
 //! | [`preset`] | transfer functions from ParaView's preset files |
 //! | [`segment`] | the weights and whole segments in f64, relative error below 1e-12 |
+//! | [`emission`] | emission that is not multiplied by the extinction, and the average model, in f64 |
+//! | [`published`] | the linear closed form as it was published, which is not stable, in f64 |
+//! | [`widget`] | what a bivariate transfer function is: widgets over two scalars |
+//! | [`widget_integral`] | segments through widgets in f64, relative error below 1e-12 |
 //! | [`segment_f32`] | the shader's arithmetic in f32, line by line |
+//! | [`symmetric_f32`] | the same weights without division, in f32, as a shader has them |
+//! | [`published_f32`] | the published form in f32, as a shader has it |
 //! | [`transfer_f32`] | whole segments in the shader's arithmetic |
+//! | [`accuracy`] | inputs and measure of the stated f32 errors |
 //! | [`color_space`] | the colour spaces in which presets are interpolated |
 //!
 //! ```
@@ -32,12 +39,25 @@
 //! # Ok::<(), tetlux_optics::transfer::TransferFunctionError>(())
 //! ```
 
+pub mod accuracy;
 pub mod color_space;
+pub mod emission;
 pub mod preset;
+pub mod published;
+pub mod published_f32;
+mod quadrature;
 pub mod segment;
 pub mod segment_f32;
+mod span;
+pub mod symmetric_f32;
+#[cfg(test)]
+mod testing;
 pub mod transfer;
 pub mod transfer_f32;
+pub mod widget;
+pub mod widget_integral;
 
+pub use emission::EmissionConvention;
 pub use preset::{Preset, PresetError, read_preset};
 pub use transfer::{ColorNode, OpacityNode, Piece, TransferFunction, TransferFunctionError};
+pub use widget::{BivariateFunction, Widget, WidgetError};

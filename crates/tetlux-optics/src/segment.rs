@@ -20,6 +20,8 @@ use std::f64::consts::PI;
 
 use errorfunctions::RealErrorFunctions;
 
+use crate::emission::{EmissionConvention, density_weights};
+use crate::quadrature::gauss;
 use crate::transfer::TransferFunction;
 
 #[cfg(test)]
@@ -30,24 +32,10 @@ mod tests;
 const QUADRATURE_DEPTH: f64 = 4.0;
 
 /// Inputs are limited to this value: their squares stay finite, and every weight is at its limit long before.
-const MAX_DEPTH: f64 = 1e150;
+pub(crate) const MAX_DEPTH: f64 = 1e150;
 
 /// Below this the weights are their own first-order terms to the last bit, and quadrature would meet denormals.
 const TINY_DEPTH: f64 = 1e-100;
-
-/// Positive halves of the 20 Gauss-Legendre nodes on [-1, 1], and their weights.
-const QUADRATURE: [[f64; 2]; 10] = [
-    [0.9931285991850949, 0.017614007139152118],
-    [0.9639719272779138, 0.04060142980038694],
-    [0.912234428251326, 0.06267204833410907],
-    [0.8391169718222188, 0.08327674157670475],
-    [0.7463319064601508, 0.10193011981724044],
-    [0.636053680726515, 0.11819453196151841],
-    [0.5108670019508271, 0.13168863844917664],
-    [0.37370608871541955, 0.14209610931838204],
-    [0.22778585114164507, 0.14917298647260374],
-    [0.07652652113349734, 0.15275338713072584],
-];
 
 /// What a segment adds: `I_0 (1 - alpha) + L_b back + L_f front`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,6 +111,18 @@ pub struct SegmentResult {
 /// in world units. The segment is cut at the control points, between which [`weights`] holds, and the parts are
 /// composed front to back; at a step the one-sided values count (partial pre-integration: Moreland and Angel 2004).
 pub fn segment(tf: &TransferFunction, unit_distance: f64, s_front: f64, s_back: f64, length: f64) -> SegmentResult {
+    segment_with(tf, unit_distance, s_front, s_back, length, EmissionConvention::EmissionAbsorption)
+}
+
+/// As [`segment`], in either convention of emission.
+pub fn segment_with(
+    tf: &TransferFunction,
+    unit_distance: f64,
+    s_front: f64,
+    s_back: f64,
+    length: f64,
+    convention: EmissionConvention,
+) -> SegmentResult {
     let mut stops = tf.control_points();
     stops.retain(|&s| s_front.min(s_back) < s && s < s_front.max(s_back));
     let ascending = s_front <= s_back;
@@ -146,10 +146,19 @@ pub fn segment(tf: &TransferFunction, unit_distance: f64, s_front: f64, s_back: 
         };
         let scale = part / unit_distance;
         let (a, b) = (clean(tau_b * scale), clean(tau_f * scale));
-        let weights = weights(a, b);
+        let [weight_b, weight_f] = match convention {
+            EmissionConvention::EmissionAbsorption => {
+                let weights = weights(a, b);
+                [weights.back, weights.front]
+            }
+            EmissionConvention::EmissionDensity => {
+                let weights = density_weights(a, b);
+                [part * weights.back, part * weights.front]
+            }
+        };
         let transmittance = f64::exp(-depth);
         for channel in 0..3 {
-            color[channel] += transmittance * (light_b[channel] * weights.back + light_f[channel] * weights.front);
+            color[channel] += transmittance * (light_b[channel] * weight_b + light_f[channel] * weight_f);
         }
         depth += 0.5 * (a + b);
         front = back;
@@ -165,25 +174,21 @@ fn below(tf: &TransferFunction, s: f64) -> (f64, [f64; 3]) {
     (tf.opacity_below(s), tf.luminance_below(s))
 }
 
-fn clean(depth: f64) -> f64 {
+/// NaN and negative values count as 0.
+pub(crate) fn clean(depth: f64) -> f64 {
     if depth > 0.0 { depth.min(MAX_DEPTH) } else { 0.0 }
 }
 
 /// w_b and w_f as sums of positive terms.
 fn weights_by_quadrature(a: f64, b: f64) -> [f64; 2] {
-    let mut sums = [0.0; 2];
-    for [node, weight] in QUADRATURE {
-        for u in [0.5 - 0.5 * node, 0.5 + 0.5 * node] {
-            let v = 1.0 - u;
-            // b + (a - b) u and b u + (a - b) u^2 / 2, each as a sum of positive terms.
-            let extinction = b * v + a * u;
-            let depth = u * (b * (1.0 - 0.5 * u) + a * (0.5 * u));
-            let emission = 0.5 * weight * extinction * (-depth).exp();
-            sums[0] += u * emission;
-            sums[1] += v * emission;
-        }
-    }
-    sums
+    gauss(0.0, 1.0, |u| {
+        let v = 1.0 - u;
+        // b + (a - b) u and b u + (a - b) u^2 / 2, each as a sum of positive terms.
+        let extinction = b * v + a * u;
+        let depth = u * (b * (1.0 - 0.5 * u) + a * (0.5 * u));
+        let emission = extinction * (-depth).exp();
+        [u * emission, v * emission]
+    })
 }
 
 /// psi for x = (a + b) / 2 above [`QUADRATURE_DEPTH`]. The second term of each difference is then a small part of the

@@ -34,33 +34,33 @@ const SQRT_PI: f32 = 1.7724539;
 const MAX_DEPTH: f32 = 1e15;
 
 /// NaN and negative values count as 0: a comparison with NaN is false, or an optimiser's minimum picks the number.
-fn clean(depth: f32) -> f32 {
+pub(crate) fn clean(depth: f32) -> f32 {
     if depth > 0.0 {
         return depth.min(MAX_DEPTH);
     }
     0.0
 }
 
-fn horner4(c: [f32; 5], x: f32) -> f32 {
+pub(crate) fn horner4(c: [f32; 5], x: f32) -> f32 {
     c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])))
 }
 
-fn horner5(c: [f32; 6], x: f32) -> f32 {
+pub(crate) fn horner5(c: [f32; 6], x: f32) -> f32 {
     c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
 }
 
-fn horner6(c: [f32; 7], x: f32) -> f32 {
+pub(crate) fn horner6(c: [f32; 7], x: f32) -> f32 {
     c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * (c[5] + x * c[6])))))
 }
 
 /// exp(x^2) erfc(x) for x >= 0.
-fn erfcx(x: f32) -> f32 {
+pub(crate) fn erfcx(x: f32) -> f32 {
     let t = 1.0 / (1.0 + x / 1.5);
     t * horner4(ERFCX_P, t) / horner4(ERFCX_Q, t)
 }
 
 /// Dawson's integral exp(-x^2) int_0^x exp(y^2) dy for x >= 0.
-fn dawson(x: f32) -> f32 {
+pub(crate) fn dawson(x: f32) -> f32 {
     let z = 1.0 / (1.0 + x * x / 5.0);
     x * z * horner6(DAWSON_P, z) / horner5(DAWSON_Q, z)
 }

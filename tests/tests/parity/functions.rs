@@ -1,6 +1,8 @@
 //! Functions with numbers in them: WGSL on the driver, Rust here, the same inputs bit for bit.
 
+use tetlux_optics::published_f32::linear_published;
 use tetlux_optics::segment_f32::{mean_depth, opacity, weights_average, weights_direct};
+use tetlux_optics::symmetric_f32::weights_symmetric;
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
 use tetlux_shaders::compose;
 use tetlux_tests::{Random, transfer};
@@ -54,7 +56,7 @@ fn any_number(random: &mut Random) -> f32 {
     }
 }
 
-const ROWS: usize = 200_000;
+const ROWS: usize = 1_000_000;
 
 const SEGMENT_TEST: &str = "
 @group(1) @binding(0) var<storage, read> inputs: array<u32>;
@@ -111,6 +113,65 @@ fn segment_weights() {
     }
     for (name, worst) in names.iter().zip(worst) {
         println!("{name}: at most {worst:.1e} apart");
+    }
+}
+
+/// Three numbers of two: `FUNCTION` stands for the function's name.
+const THREE_TEST: &str = "
+@group(1) @binding(0) var<storage, read> inputs: array<u32>;
+@group(1) @binding(1) var<storage, read_write> outputs: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = id.x;
+    if 2u * i >= arrayLength(&inputs) {
+        return;
+    }
+    let result = FUNCTION(bitcast<f32>(inputs[2u * i]), bitcast<f32>(inputs[2u * i + 1u]));
+    for (var k = 0u; k < 3u; k++) {
+        outputs[3u * i + k] = bitcast<u32>(result[k]);
+    }
+}
+";
+
+#[test]
+fn symmetric_weights() {
+    let mut random = Random::new(13);
+    let inputs: Vec<f32> = (0..2 * ROWS).map(|_| any_number(&mut random)).collect();
+    let source = compose("lib::symmetric").unwrap() + &THREE_TEST.replace("FUNCTION", "weights_symmetric");
+    let outputs = run(&source, &[], &inputs, ROWS, 3);
+    for (pair, found) in inputs.chunks_exact(2).zip(outputs.chunks_exact(3)) {
+        let twin = weights_symmetric(pair[0], pair[1]);
+        for k in 0..3 {
+            // The smaller weight is half a difference of numbers of the size of alpha, each a few roundings off.
+            let rounding = 8.0 * f32::EPSILON * twin[0];
+            let close = agree(found[k], twin[k]) || (found[k] - twin[k]).abs() <= rounding;
+            assert!(found[k].is_finite() && close, "{k} of {pair:?}: {found:?} and {twin:?}");
+        }
+    }
+}
+
+#[test]
+fn published_weights_are_finite_and_alike_where_they_are_stable() {
+    let mut random = Random::new(14);
+    // The published form is stable where the back end is much the denser.
+    let mut inputs: Vec<f32> = (0..ROWS / 4).map(|_| any_number(&mut random)).collect();
+    let stable = inputs.len() / 2;
+    for pair in inputs[..stable].chunks_exact_mut(2) {
+        pair[0] = random.between(1.0, 50.0) as f32;
+        pair[1] = pair[0] * random.between(0.0, 0.1) as f32;
+    }
+    let rows = inputs.len() / 2;
+    let source = compose("lib::published").unwrap() + &THREE_TEST.replace("FUNCTION", "linear_published");
+    let outputs = run(&source, &[], &inputs, rows, 3);
+    for (i, (pair, found)) in inputs.chunks_exact(2).zip(outputs.chunks_exact(3)).enumerate() {
+        let twin = linear_published(pair[0], pair[1]);
+        for k in 0..3 {
+            assert!(found[k].is_finite() && twin[k].is_finite(), "{k} of {pair:?}: {found:?} and {twin:?}");
+            // Differences of error functions, as published: a few roundings of the terms, which are of the order of 10.
+            let close = (found[k] - twin[k]).abs() <= 1e-5;
+            assert!(2 * i >= stable || close, "{k} of {pair:?}: {found:?} and {twin:?}");
+        }
     }
 }
 
