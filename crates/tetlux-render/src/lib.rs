@@ -2,7 +2,7 @@
 //!
 //! Both back ends project cells and composite, for every pixel, the exact integral along its ray through each cell:
 //! the CPU back end is the twin of the shaders. Which is used, and in which order cells are composited, the
-//! [`Plan`](tetlux_scene::Plan) says.
+//! [`Plan`] says.
 //!
 //! ```
 //! use tetlux_mesh::{Field, TetMesh, procedural};
