@@ -6,13 +6,16 @@ use std::hint::black_box;
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use tetlux_benches::{cube, cube_mesh, scene, transfer};
 use tetlux_mesh::{Component, TetMesh};
+use tetlux_optics::emission::density_weights;
 use tetlux_optics::segment::weights;
 use tetlux_optics::segment_f32::weights_direct;
+use tetlux_optics::symmetric_f32::weights_symmetric;
 use tetlux_optics::transfer_f32::{Weights, integrate, piece_at, pieces};
 use tetlux_order::{Eye, centroid};
 use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray};
 use tetlux_render::Renderer;
 use tetlux_scene::{Backend, Method, Order, Plan};
+use tetlux_tables::{Table, TableSpec};
 
 /// Hexahedra along an edge of the cube: 93 312 tetrahedra.
 const SIDE: usize = 25;
@@ -49,6 +52,12 @@ fn optics(c: &mut Criterion) {
     group.bench_function("weights f64", |b| {
         b.iter(|| depths.iter().map(|&(p, q)| weights(p, q).back).sum::<f64>());
     });
+    group.bench_function("density_weights f64", |b| {
+        b.iter(|| depths.iter().map(|&(p, q)| density_weights(p, q).back).sum::<f64>());
+    });
+    group.bench_function("weights_symmetric f32", |b| {
+        b.iter(|| depths.iter().map(|&(p, q)| weights_symmetric(p as f32, q as f32)[1]).sum::<f32>());
+    });
     group.bench_function("weights_direct f32", |b| {
         b.iter(|| depths.iter().map(|&(p, q)| weights_direct(p as f32, q as f32)[1]).sum::<f32>());
     });
@@ -66,6 +75,15 @@ fn optics(c: &mut Criterion) {
         });
     }
     group.bench_function("pieces", |b| b.iter(|| pieces(&transfer(true), [-2.0, 2.0], 1.0)));
+    group.finish();
+}
+
+fn tables(c: &mut Criterion) {
+    let mut group = c.benchmark_group("tables");
+    group.sample_size(10);
+    for spec in TableSpec::defaults() {
+        group.bench_function(&spec.id, |b| b.iter(|| Table::build(&spec)));
+    }
     group.finish();
 }
 
@@ -111,5 +129,5 @@ fn reference(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, mesh, order, optics, picture, reference);
+criterion_group!(benches, mesh, order, optics, tables, picture, reference);
 criterion_main!(benches);

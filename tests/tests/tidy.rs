@@ -23,6 +23,7 @@ const FORBIDDEN: &[(&str, &[&str])] = &[
     ("tetlux-reference", &["tetlux-tables", "tetlux-order", "tetlux-render", "tetlux-shaders", "wgpu"]),
     ("tetlux-scene", &["tetlux-render", "tetlux-shaders", "wgpu"]),
     ("tetlux-render", &["tetlux-reference", "clap"]),
+    ("tetlux-tables", &["tetlux-mesh", "tetlux-order", "tetlux-render", "wgpu"]),
 ];
 
 /// Largest file of the repository, in bytes: a clone stays small.

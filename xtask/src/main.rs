@@ -3,6 +3,7 @@
 #[macro_use]
 mod output;
 
+mod build_tables;
 mod compare;
 mod info;
 mod input;
@@ -31,6 +32,9 @@ enum Command {
     /// Measure a picture's error: a scene against the f64 reference, or one EXR file against another
     #[command(after_help = compare::EXAMPLES)]
     Compare(compare::Args),
+    /// Build the tables of ray-segment integrals, and state the error of each
+    #[command(after_help = build_tables::EXAMPLES)]
+    BuildTables(build_tables::Args),
     /// Say what a mesh file holds, and what is wrong with it
     #[command(after_help = info::EXAMPLES)]
     Info(info::Args),
@@ -42,6 +46,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args).map(|()| true),
         Command::Compare(args) => compare::run(&args),
+        Command::BuildTables(args) => build_tables::run(&args),
         Command::Info(args) => info::run(&args).map(|()| true),
         Command::Test => test::run().map(|()| true),
     };

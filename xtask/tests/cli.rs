@@ -261,3 +261,30 @@ fn info_tells_what_a_mesh_holds() {
     assert_eq!((&json["boundary_faces"], &json["components"]), (&serde_json::json!(6), &serde_json::json!(1)));
     assert_eq!(json["fields"][1]["ranges"][0], serde_json::json!([0.0, 5.0]));
 }
+
+#[test]
+fn tables_are_built_checked_and_distrusted() {
+    let folder = TempDir::new().unwrap();
+    let built = run(folder.path(), &["build-tables", "--only", "q", "--folder", "tables"]);
+    assert!(built.status.success(), "{}", stderr(&built));
+    let file = fs::read_dir(folder.path().join("tables"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .find(|path| path.extension().is_some_and(|e| e == "exr"))
+        .unwrap();
+    let checked = run(folder.path(), &["build-tables", "--only", "q", "--folder", "tables", "--check"]);
+    assert!(checked.status.success(), "{}{}", stdout(&checked), stderr(&checked));
+    // A table cut short is named, with the command that mends it.
+    let bytes = fs::read(&file).unwrap();
+    fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();
+    let damaged = run(folder.path(), &["build-tables", "--only", "q", "--folder", "tables", "--check"]);
+    assert!(!damaged.status.success());
+    let said = stdout(&damaged) + &stderr(&damaged);
+    let name = file.file_name().unwrap().to_string_lossy().into_owned();
+    assert!(said.contains(&name) && said.contains("cargo xtask build-tables --only q"), "{said}");
+    // Building again replaces it.
+    assert!(run(folder.path(), &["build-tables", "--only", "q", "--folder", "tables"]).status.success());
+    assert!(run(folder.path(), &["build-tables", "--only", "q", "--folder", "tables", "--check"]).status.success());
+    let unknown = run(folder.path(), &["build-tables", "--only", "nonsense", "--folder", "tables"]);
+    assert_fails(&unknown, &["nonsense", "psi"]);
+}
