@@ -60,7 +60,7 @@ struct FieldInfo {
 
 pub(crate) fn run(args: &Args) -> Result<()> {
     let split = if args.split == 5 { Split::Five } else { Split::Six };
-    let options = ReadOptions { solution: args.solution.clone() };
+    let options = ReadOptions { solution: args.solution.clone(), ..ReadOptions::default() };
     let info = progress::during("reading", || -> Result<Info> {
         let mixed = read(&args.file, &options)?;
         let (cells_by_type, notes) = (mixed.cell_counts(), mixed.notes.clone());

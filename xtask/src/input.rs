@@ -102,7 +102,7 @@ impl SceneArgs {
                 file.name
             ),
             Some(path) => {
-                let options = ReadOptions { solution: file.solution.clone() };
+                let options = ReadOptions { solution: file.solution.clone(), ..ReadOptions::default() };
                 let split = if file.split == Some(5) { Split::Five } else { Split::Six };
                 progress::during("reading the mesh", || read_tet_mesh(&path, &options, split))?
             }
