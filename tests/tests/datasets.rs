@@ -69,7 +69,7 @@ fn hexahedra_from_plot3d() {
         ("postxyz.bin", "postq.bin", "post-smooth.toml", "Momentum"),
     ] {
         let (Some(grid), Some(solution)) = (data(grid), data(solution)) else { continue };
-        let options = ReadOptions { solution: Some(solution) };
+        let options = ReadOptions { solution: Some(solution), ..ReadOptions::default() };
         for split in [Split::Five, Split::Six] {
             let mesh = read_tet_mesh(&grid, &options, split).unwrap();
             let file = SceneFile { field: Some(field.into()), ..scene_file(scene) };

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use serde::Serialize;
-use tetlux_ingest::{ReadOptions, Split, read};
+use tetlux_ingest::read;
 use tetlux_mesh::Component;
 
+use crate::mesh_args::{MeshArgs, split_of};
 use crate::progress;
 use crate::report::write_json;
 
@@ -17,14 +18,10 @@ Examples:
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Mesh file: VTU, or a PLOT3D grid
+    /// Mesh file: VTK (XML or legacy), Exodus II, Gmsh, TetGen, PLOT3D; or a closed surface: OBJ, STL
     file: PathBuf,
-    /// PLOT3D solution (q file) that belongs to the grid
-    #[arg(long, value_name = "FILE")]
-    solution: Option<PathBuf>,
-    /// Tetrahedra a hexahedron becomes: 5 or 6
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(5..=6))]
-    split: u32,
+    #[command(flatten)]
+    mesh: MeshArgs,
     /// Write every figure as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -59,12 +56,11 @@ struct FieldInfo {
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let split = if args.split == 5 { Split::Five } else { Split::Six };
-    let options = ReadOptions { solution: args.solution.clone() };
+    let options = args.mesh.options(args.mesh.solution.clone());
     let info = progress::during("reading", || -> Result<Info> {
         let mixed = read(&args.file, &options)?;
         let (cells_by_type, notes) = (mixed.cell_counts(), mixed.notes.clone());
-        let mesh = mixed.tetrahedralize(split)?;
+        let mesh = mixed.tetrahedralize(split_of(args.mesh.split))?;
         let report = mesh.validate();
         let fields = mesh.fields().iter().map(|field| {
             let components = (0..field.components).map(Component::Index).filter(|_| field.components > 1);

@@ -4,25 +4,20 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use tetlux_ingest::{ReadOptions, Split, TetMesh, read_tet_mesh};
+use tetlux_ingest::{TetMesh, read_tet_mesh};
 use tetlux_mesh::procedural;
 use tetlux_scene::{Backend, Integrator, Order, Projection, Scene, SceneFile, UnitDistance};
 
+use crate::mesh_args::{MeshArgs, split_of};
 use crate::progress;
 
 /// Flags override the scene file.
 #[derive(Args, Default)]
 #[command(next_help_heading = "Scene (flags override the scene file)")]
 pub(crate) struct SceneArgs {
-    /// Mesh file: VTU, or a PLOT3D grid
+    /// Mesh file (see docs/formats.md)
     #[arg(long, value_name = "FILE")]
     pub(crate) mesh: Option<PathBuf>,
-    /// PLOT3D solution (q file) that belongs to the grid
-    #[arg(long, value_name = "FILE")]
-    pub(crate) solution: Option<PathBuf>,
-    /// Tetrahedra a hexahedron becomes: 5 or 6
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(5..=6))]
-    pub(crate) split: Option<u32>,
     /// Field to show
     #[arg(long, value_name = "NAME")]
     pub(crate) field: Option<String>,
@@ -56,6 +51,8 @@ pub(crate) struct SceneArgs {
     /// Write composited values to the PNG as they are, as ParaView does
     #[arg(long)]
     pub(crate) display_space: bool,
+    #[command(flatten)]
+    pub(crate) file: MeshArgs,
 }
 
 /// What is rendered.
@@ -102,9 +99,8 @@ impl SceneArgs {
                 file.name
             ),
             Some(path) => {
-                let options = ReadOptions { solution: file.solution.clone() };
-                let split = if file.split == Some(5) { Split::Five } else { Split::Six };
-                progress::during("reading the mesh", || read_tet_mesh(&path, &options, split))?
+                let options = self.file.options(file.solution.clone());
+                progress::during("reading the mesh", || read_tet_mesh(&path, &options, split_of(file.split)))?
             }
         };
         if mesh.fields().is_empty() {
@@ -137,8 +133,8 @@ impl SceneArgs {
             // A solution belongs to its grid.
             (file.mesh, file.solution) = (self.mesh.clone(), None);
         }
-        file.solution = self.solution.clone().or(file.solution.take());
-        file.split = self.split.or(file.split);
+        file.solution = self.file.solution.clone().or(file.solution.take());
+        file.split = self.file.split.or(file.split);
         if self.field.is_some() {
             (file.field, file.component) = (self.field.clone(), None);
         }

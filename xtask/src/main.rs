@@ -7,6 +7,7 @@ mod build_tables;
 mod compare;
 mod info;
 mod input;
+mod mesh_args;
 mod progress;
 mod render;
 mod report;

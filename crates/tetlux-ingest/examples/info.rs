@@ -6,7 +6,8 @@ use tetlux_ingest::{ReadOptions, Split, read};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args_os().skip(1);
     let path = arguments.next().ok_or("name a mesh file")?;
-    let mixed = read(path.as_ref(), &ReadOptions { solution: arguments.next().map(Into::into) })?;
+    let mixed =
+        read(path.as_ref(), &ReadOptions { solution: arguments.next().map(Into::into), ..ReadOptions::default() })?;
     println!("{} points; {:?}", mixed.points.len(), mixed.cell_counts());
     mixed.notes.iter().for_each(|note| println!("note: {note}"));
     let mesh = mixed.tetrahedralize(Split::default())?;

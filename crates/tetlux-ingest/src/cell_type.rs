@@ -4,6 +4,24 @@
 pub(crate) const TETRAHEDRON: u8 = 10;
 /// VTK's number of a hexahedron.
 pub(crate) const HEXAHEDRON: u8 = 12;
+/// VTK's number of a wedge.
+pub(crate) const WEDGE: u8 = 13;
+/// VTK's number of a pyramid.
+pub(crate) const PYRAMID: u8 = 14;
+/// VTK's number of a quadratic tetrahedron, of ten points.
+pub(crate) const QUADRATIC_TETRAHEDRON: u8 = 24;
+/// VTK's number of a quadratic hexahedron, of twenty points.
+pub(crate) const QUADRATIC_HEXAHEDRON: u8 = 25;
+/// VTK's number of a quadratic wedge, of fifteen points.
+pub(crate) const QUADRATIC_WEDGE: u8 = 26;
+/// VTK's number of a quadratic pyramid, of thirteen points, or here fourteen: the last in the middle of the base.
+pub(crate) const QUADRATIC_PYRAMID: u8 = 27;
+/// VTK's number of a quadratic hexahedron of 27 points.
+pub(crate) const TRIQUADRATIC_HEXAHEDRON: u8 = 29;
+/// VTK's number of a quadratic wedge of eighteen points.
+pub(crate) const BIQUADRATIC_WEDGE: u8 = 32;
+/// VTK's number of a polyhedron.
+pub(crate) const POLYHEDRON: u8 = 42;
 
 /// What is known of a cell type.
 pub(crate) struct CellType {
@@ -14,11 +32,24 @@ pub(crate) struct CellType {
     pub(crate) dimension: u8,
     /// Points of each cell (files may list more: mid-side points of a cell that is called linear); `None` where they differ from cell to cell.
     pub(crate) points: Option<usize>,
-    /// Corners of each face of a linear convex cell, in order round the face; empty if it cannot be split here.
+    /// Corners of each face of a linear convex cell, in order round the face, seen from outside counter-clockwise (a
+    /// wedge's: see the splitting); empty if it is none.
     pub(crate) faces: &'static [&'static [usize]],
 }
 
 impl CellType {
+    /// Of a quadratic cell the type with the same corners and straight edges; of any other itself.
+    pub(crate) fn linear(&'static self) -> &'static CellType {
+        let number = match self.number {
+            QUADRATIC_TETRAHEDRON => TETRAHEDRON,
+            QUADRATIC_HEXAHEDRON | TRIQUADRATIC_HEXAHEDRON => HEXAHEDRON,
+            QUADRATIC_WEDGE | BIQUADRATIC_WEDGE => WEDGE,
+            QUADRATIC_PYRAMID => PYRAMID,
+            _ => return self,
+        };
+        CellType::of(number).unwrap_or(self)
+    }
+
     /// The type of a VTK number.
     pub(crate) fn of(number: u8) -> Option<&'static CellType> {
         TYPES.iter().find(|t| t.number == number)
@@ -69,18 +100,54 @@ const TYPES: &[CellType] = &[
         8,
         &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]],
     ),
-    of(13, "wedge", "wedges", 3, 6, &[&[0, 1, 2], &[3, 5, 4], &[0, 3, 4, 1], &[1, 4, 5, 2], &[2, 5, 3, 0]]),
-    of(14, "pyramid", "pyramids", 3, 5, &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]]),
-    named(15, "pentagonal prism", "pentagonal prisms", 3),
-    named(16, "hexagonal prism", "hexagonal prisms", 3),
+    of(WEDGE, "wedge", "wedges", 3, 6, &[&[0, 1, 2], &[3, 5, 4], &[0, 3, 4, 1], &[1, 4, 5, 2], &[2, 5, 3, 0]]),
+    of(PYRAMID, "pyramid", "pyramids", 3, 5, &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]]),
+    of(
+        15,
+        "pentagonal prism",
+        "pentagonal prisms",
+        3,
+        10,
+        &[
+            &[0, 4, 3, 2, 1],
+            &[5, 6, 7, 8, 9],
+            &[0, 1, 6, 5],
+            &[1, 2, 7, 6],
+            &[2, 3, 8, 7],
+            &[3, 4, 9, 8],
+            &[4, 0, 5, 9],
+        ],
+    ),
+    of(
+        16,
+        "hexagonal prism",
+        "hexagonal prisms",
+        3,
+        12,
+        &[
+            &[0, 5, 4, 3, 2, 1],
+            &[6, 7, 8, 9, 10, 11],
+            &[0, 1, 7, 6],
+            &[1, 2, 8, 7],
+            &[2, 3, 9, 8],
+            &[3, 4, 10, 9],
+            &[4, 5, 11, 10],
+            &[5, 0, 6, 11],
+        ],
+    ),
     of(21, "quadratic edge", "quadratic edges", 1, 3, &[]),
     of(22, "quadratic triangle", "quadratic triangles", 2, 6, &[]),
     of(23, "quadratic quadrilateral", "quadratic quadrilaterals", 2, 8, &[]),
-    of(24, "quadratic tetrahedron", "quadratic tetrahedra", 3, 10, &[]),
-    of(25, "quadratic hexahedron", "quadratic hexahedra", 3, 20, &[]),
-    of(26, "quadratic wedge", "quadratic wedges", 3, 15, &[]),
-    of(27, "quadratic pyramid", "quadratic pyramids", 3, 13, &[]),
+    of(QUADRATIC_TETRAHEDRON, "quadratic tetrahedron", "quadratic tetrahedra", 3, 10, &[]),
+    of(QUADRATIC_HEXAHEDRON, "quadratic hexahedron", "quadratic hexahedra", 3, 20, &[]),
+    of(QUADRATIC_WEDGE, "quadratic wedge", "quadratic wedges", 3, 15, &[]),
+    of(QUADRATIC_PYRAMID, "quadratic pyramid", "quadratic pyramids", 3, 13, &[]),
     of(28, "biquadratic quadrilateral", "biquadratic quadrilaterals", 2, 9, &[]),
-    of(29, "triquadratic hexahedron", "triquadratic hexahedra", 3, 27, &[]),
-    named(42, "polyhedron", "polyhedra", 3),
+    of(TRIQUADRATIC_HEXAHEDRON, "triquadratic hexahedron", "triquadratic hexahedra", 3, 27, &[]),
+    of(BIQUADRATIC_WEDGE, "biquadratic wedge", "biquadratic wedges", 3, 18, &[]),
+    named(POLYHEDRON, "polyhedron", "polyhedra", 3),
+    named(71, "Lagrange tetrahedron", "Lagrange tetrahedra", 3),
+    named(72, "Lagrange hexahedron", "Lagrange hexahedra", 3),
+    named(73, "Lagrange wedge", "Lagrange wedges", 3),
+    named(74, "Lagrange pyramid", "Lagrange pyramids", 3),
 ];

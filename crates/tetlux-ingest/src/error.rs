@@ -7,8 +7,7 @@ use std::path::PathBuf;
 use tetlux_mesh::MeshError;
 
 /// The formats [`read`](crate::read) knows, for messages.
-pub(crate) const FORMATS: &str =
-    "VTK XML unstructured grids (.vtu) and PLOT3D whole 3-D single grids (C binary, single precision)";
+pub(crate) const FORMATS: &str = "closed surfaces to fill (OBJ, STL), VTK XML grids (.vtu, .vts, .vtr, .vti, .pvtu and the like, .vtm, .pvd), legacy VTK grids (.vtk), Gmsh (.msh, versions 2 and 4.1), TetGen (.node with .ele) and Exodus II (.ex2, .e, .exo, in netCDF's classic formats) and PLOT3D (whole 3-D grids)";
 
 /// Where in a file something was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -138,9 +137,86 @@ pub enum IngestError {
         /// The solution file.
         solution: PathBuf,
         /// The dimensions in the solution file.
-        found: [i32; 3],
+        found: [u32; 3],
         /// The grid's.
-        expected: [i32; 3],
+        expected: [u32; 3],
+    },
+    /// A time step that the file does not have.
+    #[error(
+        "{}: time step {step} is out of range: the file has {count}, numbered from 0; name one of them, or none for \
+         the last",
+        path.display()
+    )]
+    NoSuchTimeStep {
+        /// The file.
+        path: PathBuf,
+        /// The step asked for.
+        step: u64,
+        /// Number of steps there are.
+        count: u64,
+    },
+    /// A surface that encloses nothing.
+    #[error(
+        "{}: the surface is not closed, so that it has no inside to fill: {open} edges have one triangle, \
+         {non_manifold} have three or more, {same_way} have two of which one must be inside out; close it in a mesh \
+         editor (Blender: Mesh, Clean Up, Fill Holes; MeshLab: Cleaning and Repairing)",
+        path.display()
+    )]
+    NotClosed {
+        /// The file.
+        path: PathBuf,
+        /// Edges of one triangle alone.
+        open: usize,
+        /// Edges of three or more.
+        non_manifold: usize,
+        /// Edges of two triangles that no turning makes agree.
+        same_way: usize,
+    },
+    /// A cell size that is no size.
+    #[error("{}: cells of size {cell_size} cannot fill the surface; the size must be positive", path.display())]
+    CellSize {
+        /// The file.
+        path: PathBuf,
+        /// The size asked for.
+        cell_size: f64,
+    },
+    /// Cells too small for the surface.
+    #[error(
+        "{}: cells of size {cell_size} take a lattice of {nodes:.0} nodes, where {limit} are the most, or meet too \
+         many triangles; {fitting:.4} fits",
+        path.display()
+    )]
+    TooFine {
+        /// The file.
+        path: PathBuf,
+        /// The size asked for.
+        cell_size: f64,
+        /// Nodes of the lattice round the surface.
+        nodes: f64,
+        /// Nodes there may be.
+        limit: u64,
+        /// A size that will do.
+        fitting: f64,
+    },
+    /// Cells too large for the surface.
+    #[error(
+        "{}: no node of a lattice of cell size {cell_size} lies inside the surface; give a size of half its thickness \
+         or less",
+        path.display()
+    )]
+    NothingInside {
+        /// The file.
+        path: PathBuf,
+        /// The size asked for.
+        cell_size: f64,
+    },
+    /// A file that a collection lists cannot be read.
+    #[error("{}: of the files it lists, {source}", path.display())]
+    Listed {
+        /// The collection.
+        path: PathBuf,
+        /// What is wrong with the file, which it names.
+        source: Box<IngestError>,
     },
     /// The points and cells make no mesh, or a field does not fit.
     #[error("{}: {source}", path.display())]

@@ -2,9 +2,14 @@
 //!
 //! [`read`] recognises a file by its content and gives a [`MixedMesh`]: points, cells of any type and fields, as the
 //! file has them, with a note of whatever was passed over. [`MixedMesh::tetrahedralize`] makes a
-//! [`TetMesh`] of it. Read are VTK XML unstructured grids (`.vtu`: appended or inline, raw, base64 or
-//! text, zlib or uncompressed, either byte order) and PLOT3D (one whole 3-D grid in C binary, with or without iblank,
-//! either byte order, and its solution).
+//! [`TetMesh`] of it. Read are VTK XML grids of all kinds, and collections of them (`.vtu`, `.vts`, `.vtr`,
+//! `.vti`, `.pvtu` and the like, `.vtm`, `.pvd`: appended or inline, raw, base64 or text, zlib, LZ4, LZMA or
+//! uncompressed, either byte order), legacy VTK grids (`.vtk`, versions 1.0 to 5.1), Gmsh (`.msh`,
+//! versions 2 and 4.1), TetGen (`.node` with `.ele`), Exodus II (in
+//! netCDF's classic formats), and PLOT3D (whole 3-D grids and their solutions, however they are written).
+//!
+//! A closed [`Surface`] (OBJ, STL) is filled with tetrahedra by [`fill`], by `read` too, with the distance to it and
+//! any [`Expression`] of the coordinates as fields.
 //!
 //! ```
 //! use tetlux_ingest::{ReadOptions, Split, read};
@@ -31,16 +36,29 @@
 //! ```
 
 mod cell_type;
+#[cfg(test)]
+mod damage;
 mod error;
+mod exodus;
+mod expression;
+mod gmsh;
 mod mixed;
 mod plot3d;
 mod read;
 mod source;
+mod stuffing;
+mod surface;
+mod tetgen;
 mod tetrahedralize;
-mod vtu;
+mod vtk_legacy;
+mod vtk_xml;
+mod words;
 
 pub use error::{IngestError, Place};
+pub use expression::{Expression, ExpressionError};
 pub use mixed::{MixedCells, MixedMesh, StructuredGrid};
 pub use read::{ReadOptions, read, read_tet_mesh};
+pub use stuffing::{DISTANCE, Filled, fill};
+pub use surface::{Surface, SurfaceReport};
 pub use tetlux_mesh::TetMesh;
 pub use tetlux_mesh::procedural::Split;

@@ -130,8 +130,17 @@ fn recentre(points: &[DVec3]) -> Result<(DVec3, Vec<Vec3>), MeshError> {
     Ok((if points.is_empty() { DVec3::ZERO } else { origin }, local))
 }
 
-/// Points to keep, in their order, and for every point the place of the one it became.
-fn merge_coincident(points: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
+/// For each point the first of those that coincide with it, itself if none does: the points that
+/// [`TetMesh::assemble`] makes one. Fails where that does: at a coordinate that is not finite or out of range.
+pub fn coincident(points: &[DVec3]) -> Result<Vec<u32>, MeshError> {
+    let limit = u32::MAX as usize / 4;
+    if points.len() > limit {
+        return Err(MeshError::TooLarge { what: "points", count: points.len(), limit });
+    }
+    recentre(points).map(|(_, local)| first_coincident(&local))
+}
+
+fn first_coincident(points: &[Vec3]) -> Vec<u32> {
     let bits = |i: u32| points[i as usize].to_array().map(f32::to_bits);
     let mut sorted: Vec<u32> = (0..points.len() as u32).collect();
     sorted.par_sort_unstable_by_key(|&i| (bits(i), i));
@@ -141,6 +150,12 @@ fn merge_coincident(points: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
             first[i as usize] = group[0];
         }
     }
+    first
+}
+
+/// Points to keep, in their order, and for every point the place of the one it became.
+fn merge_coincident(points: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
+    let first = first_coincident(points);
     let kept: Vec<u32> = (0..points.len() as u32).filter(|&i| first[i as usize] == i).collect();
     let mut place = vec![NONE; points.len()];
     for (k, &i) in kept.iter().enumerate() {

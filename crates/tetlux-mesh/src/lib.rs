@@ -18,13 +18,15 @@
 
 mod adjacency;
 mod assemble;
+mod cache;
 mod error;
 mod field;
+mod gradient;
 mod mesh;
 pub mod procedural;
 mod report;
 
-pub use assemble::Assembly;
+pub use assemble::{Assembly, coincident};
 pub use error::MeshError;
 pub use field::{Component, Field, Location, ScalarField};
 pub use mesh::{FACES, NONE, TetMesh};

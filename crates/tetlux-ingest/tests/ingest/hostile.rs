@@ -7,7 +7,7 @@ use crate::writers::{Encoding, Folder, Plot3d, two_hexahedra, vtu};
 
 /// One way to damage a file; places are fractions of its length, so that they fit any.
 #[derive(Debug, Clone)]
-enum Damage {
+pub(crate) enum Damage {
     Truncate(f64),
     Flip(f64, u8),
     /// Exchanges two stretches of a length.
@@ -19,7 +19,7 @@ enum Damage {
     Digits(usize, &'static str),
 }
 
-fn damage() -> impl Strategy<Value = Damage> {
+pub(crate) fn damage() -> impl Strategy<Value = Damage> {
     let numbers = vec![
         0,
         1,
@@ -59,7 +59,7 @@ fn damage() -> impl Strategy<Value = Damage> {
 }
 
 impl Damage {
-    fn apply(&self, bytes: &mut Vec<u8>) {
+    pub(crate) fn apply(&self, bytes: &mut Vec<u8>) {
         let place = |at: f64, bytes: &[u8]| (at * bytes.len() as f64) as usize;
         if bytes.is_empty() {
             return;
@@ -102,9 +102,10 @@ impl Damage {
 }
 
 /// Reads and splits a file; true if a mesh came of it. Fails only by panic.
-fn survives(grid: &[u8], solution: Option<&[u8]>) -> bool {
+pub(crate) fn survives(grid: &[u8], solution: Option<&[u8]>) -> bool {
     let folder = Folder::new();
-    let options = ReadOptions { solution: solution.map(|bytes| folder.write("q.bin", bytes)) };
+    let solution = solution.map(|bytes| folder.write("q.bin", bytes));
+    let options = ReadOptions { solution, ..ReadOptions::default() };
     match read(&folder.write("a.xyz", grid), &options) {
         Ok(mesh) => [Split::Five, Split::Six].map(|split| mesh.clone().tetrahedralize(split).is_ok())[0],
         Err(error) => {

@@ -2,8 +2,10 @@
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test's helpers fail and tell like the test")]
 
 mod hostile;
+mod legacy;
 mod plot3d;
 mod real;
+mod vtk_xml;
 mod vtu;
 mod writers;
 
@@ -71,9 +73,9 @@ fn an_inconsistent_mesh_is_refused_and_not_indexed() {
     for mesh in broken {
         assert!(mesh.tetrahedralize(Split::Six).is_err());
     }
-    let grid = tetlux_ingest::StructuredGrid { counts: [2, 2, 3], blanked: Some(vec![false; 11]) };
+    let grid = tetlux_ingest::StructuredGrid { first_point: 0, counts: [2, 2, 3], blanked: Some(vec![false; 11]) };
     let mesh =
-        MixedMesh { points: vec![DVec3::ZERO; 12], grid: Some(grid), path: PathBuf::new(), ..MixedMesh::default() };
+        MixedMesh { points: vec![DVec3::ZERO; 12], grids: vec![grid], path: PathBuf::new(), ..MixedMesh::default() };
     assert_eq!(mesh.cell_counts(), []);
     assert!(mesh.tetrahedralize(Split::Six).is_err());
 }

@@ -35,7 +35,12 @@ pub(crate) fn two_hexahedra() -> MixedMesh {
             mesh.points.push(DVec3::new(x, y, f64::from(k)));
         }
     }
-    mesh.cells = MixedCells { types: vec![12; 2], connectivity: (0..8).chain(4..12).collect(), offsets: vec![8, 16] };
+    mesh.cells = MixedCells {
+        types: vec![12; 2],
+        connectivity: (0..8).chain(4..12).collect(),
+        offsets: vec![8, 16],
+        ..MixedCells::default()
+    };
     let position = mesh.points.iter().flat_map(|p| p.to_array()).collect();
     mesh.fields = vec![Field::point("position & <more>", 3, position), Field::cell("number", 1, vec![7.0, -8.5])];
     mesh

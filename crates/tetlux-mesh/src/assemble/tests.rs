@@ -207,3 +207,12 @@ fn place_and_size_do_not_matter() {
         }
     }
 }
+
+#[test]
+fn coincident_points_are_named_by_the_first() {
+    // In single precision a billionth beside one is one, and a billionth itself is a point.
+    let list = points(&[[-1.0; 3], [1.0; 3], [1e-9, 0.0, 0.0], [1.0, 1.0, 1.0 + 1e-9], [0.0; 3], [0.0, -0.0, 0.0]]);
+    assert_eq!(coincident(&list).unwrap(), [0, 1, 2, 1, 4, 4]);
+    assert_eq!(coincident(&[]).unwrap(), []);
+    assert!(matches!(coincident(&[DVec3::NAN]), Err(MeshError::Point { point: 0, .. })));
+}

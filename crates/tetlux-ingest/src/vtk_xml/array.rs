@@ -1,18 +1,17 @@
 //! The values of one array, from whichever encoding it has.
 
 use std::borrow::Cow;
-use std::io::Read;
 use std::str::FromStr;
 
-use flate2::read::ZlibDecoder;
-
 use super::base64::Decoder;
+use super::compress::Compressor;
 use super::document::{DataArray, Document, Number, Storage};
 use crate::source::{ByteOrder, Source, excerpt, numbers};
 use crate::{IngestError, Place};
 
-/// No deflate stream grows by more (RFC 1951: 258 bytes from two bits), so no more memory is asked for.
-const MOST_GROWTH: u64 = 1032;
+/// Arrays may lie on one another, but all together take no more than so many times the data there are: else a small
+/// file could fill any memory.
+const SHARING: u64 = 2;
 
 /// The values of an array as real numbers; it must have `expected` of them.
 pub(super) fn floats(
@@ -22,9 +21,9 @@ pub(super) fn floats(
     expected: u64,
 ) -> Result<Vec<f64>, IngestError> {
     if let Storage::Text(text) = array.storage {
-        return parse(source, array, text, expected);
+        return parse(source, array, text, Some(expected));
     }
-    let (bytes, order) = (Binary { source, document, array }.decode(expected)?, document.order);
+    let (bytes, order) = (Binary { source, document, array }.decode(Some(expected))?, document.order);
     Ok(match array.number {
         Number::Int8 => numbers!(i8, bytes, order, f64::from),
         Number::UInt8 => numbers!(u8, bytes, order, f64::from),
@@ -39,12 +38,13 @@ pub(super) fn floats(
     })
 }
 
-/// The values of an array of whole numbers, those beyond an `i64` as its largest; it must have `expected` of them.
+/// The values of an array of whole numbers, those beyond an `i64` as its largest; it must have `expected` of them, if
+/// that is known.
 pub(super) fn integers(
     source: &Source,
     document: &Document,
     array: &DataArray,
-    expected: u64,
+    expected: Option<u64>,
 ) -> Result<Vec<i64>, IngestError> {
     if matches!(array.number, Number::Float32 | Number::Float64) {
         let what = "an array of whole numbers of type";
@@ -68,27 +68,36 @@ pub(super) fn integers(
 }
 
 /// Numbers in words.
-fn parse<T: FromStr>(source: &Source, array: &DataArray, text: &str, expected: u64) -> Result<Vec<T>, IngestError> {
-    let place = Place::Byte(array.at);
+fn parse<T: FromStr>(
+    source: &Source,
+    array: &DataArray,
+    text: &str,
+    expected: Option<u64>,
+) -> Result<Vec<T>, IngestError> {
+    let most = expected.unwrap_or(u64::MAX);
+    let wrong = |found: String| {
+        let what = format!("{} of {most} values", label(array));
+        source.malformed(Place::Byte(array.at), what, found, "the number of values must fit the mesh")
+    };
     // A number takes two characters at least, its separator counted.
-    let mut values = Vec::with_capacity(expected.min(text.len() as u64 / 2 + 1) as usize);
+    let mut values = Vec::with_capacity(most.min(text.len() as u64 / 2 + 1) as usize);
     for word in text.split_ascii_whitespace() {
-        if values.len() as u64 == expected {
-            let what = format!("{} of {expected} values", label(array));
-            return Err(source.malformed(place, what, "more", "the number of values must fit the mesh"));
+        if values.len() as u64 == most {
+            return Err(wrong("more".into()));
         }
         values.push(word.parse().map_err(|_| {
-            source.malformed(place, format!("value {} of {}", values.len(), label(array)), word, "write a number")
+            let what = format!("value {} of {}", values.len(), label(array));
+            source.malformed(Place::Byte(array.at), what, word, "write a number")
         })?);
     }
-    if (values.len() as u64) < expected {
-        let what = format!("{} of {expected} values", label(array));
-        return Err(source.malformed(place, what, values.len(), "the number of values must fit the mesh"));
+    if expected.is_some_and(|expected| (values.len() as u64) < expected) {
+        return Err(wrong(values.len().to_string()));
     }
     Ok(values)
 }
 
-fn label(array: &DataArray) -> String {
+/// An array as a message calls it.
+pub(super) fn label(array: &DataArray) -> String {
     array.name.as_ref().map_or("an array without a name".into(), |name| format!("array \"{}\"", excerpt(name)))
 }
 
@@ -120,9 +129,19 @@ impl<'a> Stream<'a> {
 }
 
 impl<'a> Binary<'a> {
-    fn decode(&self, expected: u64) -> Result<Cow<'a, [u8]>, IngestError> {
-        let bytes = expected.saturating_mul(self.array.number.size());
-        if self.document.compressed { self.inflate(bytes) } else { self.copy(bytes) }
+    fn decode(&self, expected: Option<u64>) -> Result<Cow<'a, [u8]>, IngestError> {
+        let bytes = expected.map(|n| n.saturating_mul(self.array.number.size()));
+        if bytes == Some(0) {
+            return Ok(Cow::Borrowed(&[]));
+        }
+        match &self.document.compressor {
+            Compressor::None => self.copy(bytes),
+            Compressor::Other(name) => {
+                let remedy = "write the file with ZLib, LZ4 or LZMA, or uncompressed";
+                Err(self.source.unsupported(Place::Byte(self.array.at), "the compressor", name, remedy))
+            }
+            compressor => self.expand(compressor, bytes),
+        }
     }
 
     /// The array's data, and their place in the file.
@@ -144,14 +163,14 @@ impl<'a> Binary<'a> {
     }
 
     /// Data that are not compressed: one length, then the bytes, in one stream.
-    fn copy(&self, expected: u64) -> Result<Cow<'a, [u8]>, IngestError> {
+    fn copy(&self, expected: Option<u64>) -> Result<Cow<'a, [u8]>, IngestError> {
         let width = self.width();
         let (mut probe, at) = self.stream()?;
         let header = self.words(&probe.read(width));
         let &[declared] = header.as_slice() else { return Err(self.truncated(at, width as u64, 0)) };
         self.agree(declared, expected)?;
         let (mut stream, _) = self.stream()?;
-        let needed = expected.saturating_add(width as u64);
+        let needed = declared.saturating_add(width as u64);
         let all = stream.read(usize::try_from(needed).unwrap_or(usize::MAX));
         if (all.len() as u64) < needed {
             return Err(self.truncated(at, needed, all.len() as u64));
@@ -168,7 +187,7 @@ impl<'a> Binary<'a> {
 
     /// Compressed data: the number of blocks, their size, the last one's if it is smaller, the compressed size of
     /// each; then, in a stream of its own, the blocks.
-    fn inflate(&self, expected: u64) -> Result<Cow<'a, [u8]>, IngestError> {
+    fn expand(&self, compressor: &Compressor, expected: Option<u64>) -> Result<Cow<'a, [u8]>, IngestError> {
         let width = self.width();
         let (mut probe, at) = self.stream()?;
         let header = self.words(&probe.read(3 * width));
@@ -192,30 +211,24 @@ impl<'a> Binary<'a> {
             return Err(self.truncated(at, needed.saturating_add(total), needed + data.len() as u64));
         }
         self.take(needed + total)?;
-        if expected > total.saturating_mul(MOST_GROWTH) {
-            let what = format!("{} cannot become {expected} bytes", label(self.array));
+        if declared > total.saturating_mul(compressor.most_growth()) {
+            let what = format!("{} cannot become {declared} bytes", label(self.array));
             return Err(self.malformed(what, format!("{total} compressed bytes"), "write the file again"));
         }
         let mut bytes = Vec::new();
-        if usize::try_from(expected).map_or(true, |n| bytes.try_reserve_exact(n).is_err()) {
+        if usize::try_from(declared).map_or(true, |n| bytes.try_reserve_exact(n).is_err()) {
             let what = format!("no memory for {}", label(self.array));
-            return Err(self.malformed(what, format!("{expected} bytes"), "free memory, or split the data set"));
+            return Err(self.malformed(what, format!("{declared} bytes"), "free memory, or split the data set"));
         }
         let mut rest = data.as_ref();
         for (b, &length) in compressed.iter().enumerate() {
             let (block, after) = rest.split_at((length as usize).min(rest.len()));
             rest = after;
             let size = if partial == 1 && b as u64 + 1 == blocks { last } else { size };
-            let start = bytes.len() as u64;
-            // One byte more than there should be, so that the end of the stream and its checksum are reached.
-            let read = ZlibDecoder::new(block).take(size.saturating_add(1)).read_to_end(&mut bytes);
-            let found = match read {
-                Ok(_) if bytes.len() as u64 - start == size => continue,
-                Ok(n) => format!("{n} bytes or more"),
-                Err(error) => error.to_string(),
-            };
-            let what = format!("block {b} of {} must inflate to {size} bytes", label(self.array));
-            return Err(self.malformed(what, found, "copy or write the file again"));
+            compressor.expand(block, size, &mut bytes).map_err(|found| {
+                let what = format!("block {b} of {} must expand to {size} bytes", label(self.array));
+                self.malformed(what, found, "copy or write the file again")
+            })?;
         }
         Ok(Cow::Owned(bytes))
     }
@@ -226,7 +239,7 @@ impl<'a> Binary<'a> {
             return Ok(());
         };
         appended.taken.set(appended.taken.get().saturating_add(bytes));
-        if appended.taken.get() <= appended.bytes.len() as u64 {
+        if appended.taken.get() <= (appended.bytes.len() as u64).saturating_mul(SHARING) {
             return Ok(());
         }
         let what = format!("{} and those before it share appended data", label(self.array));
@@ -243,10 +256,8 @@ impl<'a> Binary<'a> {
         if self.document.wide { numbers!(u64, bytes, order, |v| v) } else { numbers!(u32, bytes, order, u64::from) }
     }
 
-    fn agree(&self, declared: u64, expected: u64) -> Result<(), IngestError> {
-        if declared == expected {
-            return Ok(());
-        }
+    fn agree(&self, declared: u64, expected: Option<u64>) -> Result<(), IngestError> {
+        let Some(expected) = expected.filter(|&expected| expected != declared) else { return Ok(()) };
         let what = format!(
             "{} has the wrong length: the numbers of points, cells and components ask for {expected} bytes",
             label(self.array)
