@@ -43,6 +43,7 @@ mod exodus;
 mod expression;
 mod gmsh;
 mod mixed;
+mod number;
 mod plot3d;
 mod read;
 mod source;

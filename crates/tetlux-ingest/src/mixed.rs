@@ -184,16 +184,14 @@ impl MixedMesh {
         named
     }
 
+    fn malformed(&self, place: Place, what: &str, found: String, remedy: &str) -> IngestError {
+        let (what, remedy) = (what.into(), remedy.into());
+        IngestError::Malformed { path: self.path.clone(), place, what, found, remedy }
+    }
+
     /// Whether all parts fit together: finite points, indices in range, lengths that agree.
     pub(crate) fn check(&self) -> Result<(), IngestError> {
         let points = self.points.len();
-        let malformed = |place, what: &str, found: String, remedy: &str| IngestError::Malformed {
-            path: self.path.clone(),
-            place,
-            what: what.into(),
-            found,
-            remedy: remedy.into(),
-        };
         if u32::try_from(points).is_err() {
             let source = MeshError::TooLarge { what: "points", count: points, limit: u32::MAX as usize };
             return Err(IngestError::Mesh { path: self.path.clone(), source });
@@ -206,35 +204,35 @@ impl MixedMesh {
             let blanked = grid.blanked.as_ref().map_or(String::new(), |b| format!(" with {} blankings", b.len()));
             let found = format!("{:?} from point {} of {points}{blanked}", grid.counts, grid.first_point);
             let remedy = "a grid needs i x j x k points, one at least, and a blanking each if any";
-            return Err(malformed(Place::File, "the grid's dimensions", found, remedy));
+            return Err(self.malformed(Place::File, "the grid's dimensions", found, remedy));
         }
         let MixedCells { types, connectivity, offsets, .. } = &self.cells;
         if types.len() != offsets.len() {
             let found = format!("{} types and {} offsets", types.len(), offsets.len());
-            return Err(malformed(Place::File, "the cells' arrays", found, "each cell needs one of each"));
+            return Err(self.malformed(Place::File, "the cells' arrays", found, "each cell needs one of each"));
         }
         let mut start = 0;
         for (c, &end) in offsets.iter().enumerate() {
             if end < start || end > connectivity.len() {
                 let found = format!("{end} after {start}, of {} indices", connectivity.len());
                 let remedy = "offsets must not decrease nor pass the end of the connectivity";
-                return Err(malformed(Place::Cell(c), "the cell's offset", found, remedy));
+                return Err(self.malformed(Place::Cell(c), "the cell's offset", found, remedy));
             }
             if let Some(&index) = connectivity[start..end].iter().find(|&&v| v as usize >= points) {
                 let remedy = format!("indices must be below the number of points, {points}");
-                return Err(malformed(Place::Cell(c), "a point index out of range", index.to_string(), &remedy));
+                return Err(self.malformed(Place::Cell(c), "a point index out of range", index.to_string(), &remedy));
             }
             let expected = CellType::of(types[c]).and_then(|t| t.points);
             if let Some(expected) = expected.filter(|&n| end - start < n) {
                 let what = format!("the number of points of a cell of type {}", types[c]);
                 let remedy = format!("it must have {expected}");
-                return Err(malformed(Place::Cell(c), &what, (end - start).to_string(), &remedy));
+                return Err(self.malformed(Place::Cell(c), &what, (end - start).to_string(), &remedy));
             }
             start = end;
         }
         if start != connectivity.len() {
             let remedy = "the last offset must be the number of indices";
-            return Err(malformed(
+            return Err(self.malformed(
                 Place::File,
                 "indices that belong to no cell",
                 (connectivity.len() - start).to_string(),
@@ -248,17 +246,15 @@ impl MixedMesh {
     /// Whether the face stream is that of the polyhedra, one after another, with indices in range.
     fn check_faces(&self) -> Result<(), IngestError> {
         let MixedCells { types, face_stream, face_offsets, .. } = &self.cells;
-        let malformed = |place, what: &str, found: String, remedy: &str| IngestError::Malformed {
-            path: self.path.clone(),
-            place,
-            what: what.into(),
-            found,
-            remedy: remedy.into(),
-        };
         let polyhedra = types.contains(&cell_type::POLYHEDRON);
         if face_offsets.len() != types.len() && (polyhedra || !face_offsets.is_empty()) {
             let found = format!("{} for {} cells", face_offsets.len(), types.len());
-            return Err(malformed(Place::File, "the places of the polyhedra's faces", found, "each cell needs one"));
+            return Err(self.malformed(
+                Place::File,
+                "the places of the polyhedra's faces",
+                found,
+                "each cell needs one",
+            ));
         }
         let mut rest = face_stream.as_slice();
         for (c, &start) in face_offsets.iter().enumerate() {
@@ -269,26 +265,41 @@ impl MixedMesh {
             if start != next {
                 let (found, remedy) =
                     (start.to_string(), format!("they must begin at {next}, where the last ones end"));
-                return Err(malformed(Place::Cell(c), "the place of the polyhedron's faces", found, &remedy));
+                return Err(self.malformed(Place::Cell(c), "the place of the polyhedron's faces", found, &remedy));
             }
             let Some((faces, after)) = polyhedron(rest) else {
                 let found = format!("the end after {} numbers", face_stream.len());
                 let remedy = "a polyhedron needs its number of faces, and for each that of its points, and these";
-                return Err(malformed(Place::Cell(c), "the faces of the polyhedron", found, remedy));
+                return Err(self.malformed(Place::Cell(c), "the faces of the polyhedron", found, remedy));
             };
             if let Some(face) = faces.iter().find(|face| face.len() < 3) {
                 let found = face.len().to_string();
-                return Err(malformed(Place::Cell(c), "the points of a polyhedron's face", found, "it needs three"));
+                return Err(self.malformed(
+                    Place::Cell(c),
+                    "the points of a polyhedron's face",
+                    found,
+                    "it needs three",
+                ));
             }
             if let Some(&index) = faces.iter().copied().flatten().find(|&&v| v as usize >= self.points.len()) {
                 let remedy = format!("indices must be below the number of points, {}", self.points.len());
-                return Err(malformed(Place::Cell(c), "a face's point index out of range", index.to_string(), &remedy));
+                return Err(self.malformed(
+                    Place::Cell(c),
+                    "a face's point index out of range",
+                    index.to_string(),
+                    &remedy,
+                ));
             }
             rest = after;
         }
         if !rest.is_empty() {
             let found = format!("{} numbers", rest.len());
-            return Err(malformed(Place::File, "faces that belong to no polyhedron", found, "write the file again"));
+            return Err(self.malformed(
+                Place::File,
+                "faces that belong to no polyhedron",
+                found,
+                "write the file again",
+            ));
         }
         Ok(())
     }

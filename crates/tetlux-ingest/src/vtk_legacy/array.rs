@@ -1,6 +1,7 @@
 //! Arrays of numbers, in words or in big-endian binary.
 
-use crate::source::{ByteOrder, numbers};
+use crate::number::Number;
+use crate::source::ByteOrder;
 use crate::words::Words;
 use crate::{IngestError, Place};
 
@@ -8,16 +9,7 @@ use crate::{IngestError, Place};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Bit,
-    Int8,
-    UInt8,
-    Int16,
-    UInt16,
-    Int32,
-    UInt32,
-    Int64,
-    UInt64,
-    Float32,
-    Float64,
+    Of(Number),
     Text,
     Variant,
 }
@@ -26,22 +18,29 @@ impl Kind {
     fn of(name: &str) -> Option<Kind> {
         Some(match name {
             "bit" => Kind::Bit,
-            "char" | "signed_char" | "vtktypeint8" => Kind::Int8,
-            "unsigned_char" | "vtktypeuint8" => Kind::UInt8,
-            "short" | "vtktypeint16" => Kind::Int16,
-            "unsigned_short" | "vtktypeuint16" => Kind::UInt16,
+            "char" | "signed_char" | "vtktypeint8" => Kind::Of(Number::Int8),
+            "unsigned_char" | "vtktypeuint8" => Kind::Of(Number::UInt8),
+            "short" | "vtktypeint16" => Kind::Of(Number::Int16),
+            "unsigned_short" | "vtktypeuint16" => Kind::Of(Number::UInt16),
             // VTK writes its own type of indices in 32 bits.
-            "int" | "vtkidtype" | "vtktypeint32" => Kind::Int32,
-            "unsigned_int" | "vtktypeuint32" => Kind::UInt32,
+            "int" | "vtkidtype" | "vtktypeint32" => Kind::Of(Number::Int32),
+            "unsigned_int" | "vtktypeuint32" => Kind::Of(Number::UInt32),
             // As VTK writes them on all systems but Windows.
-            "long" | "long_long" | "vtktypeint64" => Kind::Int64,
-            "unsigned_long" | "unsigned_long_long" | "vtktypeuint64" => Kind::UInt64,
-            "float" => Kind::Float32,
-            "double" => Kind::Float64,
+            "long" | "long_long" | "vtktypeint64" => Kind::Of(Number::Int64),
+            "unsigned_long" | "unsigned_long_long" | "vtktypeuint64" => Kind::Of(Number::UInt64),
+            "float" => Kind::Of(Number::Float32),
+            "double" => Kind::Of(Number::Float64),
             "string" | "utf8_string" => Kind::Text,
             "variant" => Kind::Variant,
             _ => return None,
         })
+    }
+
+    fn number(self) -> Option<Number> {
+        match self {
+            Kind::Of(number) => Some(number),
+            Kind::Bit | Kind::Text | Kind::Variant => None,
+        }
     }
 
     /// Reads the name of a type.
@@ -53,16 +52,6 @@ impl Kind {
             let remedy = "write it as int, vtktypeint64, float or double";
             words.source.unsupported(place, "an array of type", &name.escape_ascii().to_string(), remedy)
         })
-    }
-
-    fn bits(self) -> u64 {
-        match self {
-            Kind::Bit => 1,
-            Kind::Int8 | Kind::UInt8 | Kind::Text | Kind::Variant => 8,
-            Kind::Int16 | Kind::UInt16 => 16,
-            Kind::Int32 | Kind::UInt32 | Kind::Float32 => 32,
-            Kind::Int64 | Kind::UInt64 | Kind::Float64 => 64,
-        }
     }
 }
 
@@ -81,7 +70,6 @@ pub(super) fn floats(
     what: &str,
     count: u64,
 ) -> Result<Option<Vec<f64>>, IngestError> {
-    let order = ByteOrder::Big;
     if matches!(kind, Kind::Text | Kind::Variant) {
         return skip_text(words, encoding, kind, what, count).map(|()| None);
     }
@@ -91,16 +79,8 @@ pub(super) fn floats(
     let bytes = binary(words, kind, what, count)?;
     Ok(Some(match kind {
         Kind::Bit => (0..count as usize).map(|i| f64::from(bytes[i / 8] >> (7 - i % 8) & 1)).collect(),
-        Kind::Int8 => numbers!(i8, bytes, order, f64::from),
-        Kind::UInt8 | Kind::Text | Kind::Variant => numbers!(u8, bytes, order, f64::from),
-        Kind::Int16 => numbers!(i16, bytes, order, f64::from),
-        Kind::UInt16 => numbers!(u16, bytes, order, f64::from),
-        Kind::Int32 => numbers!(i32, bytes, order, f64::from),
-        Kind::UInt32 => numbers!(u32, bytes, order, f64::from),
-        Kind::Int64 => numbers!(i64, bytes, order, |v| v as f64),
-        Kind::UInt64 => numbers!(u64, bytes, order, |v| v as f64),
-        Kind::Float32 => numbers!(f32, bytes, order, f64::from),
-        Kind::Float64 => numbers!(f64, bytes, order, |v| v),
+        Kind::Of(number) => number.floats(bytes, ByteOrder::Big),
+        Kind::Text | Kind::Variant => return Ok(None),
     }))
 }
 
@@ -112,23 +92,16 @@ pub(super) fn integers(
     what: &str,
     count: u64,
 ) -> Result<Vec<i64>, IngestError> {
-    if matches!(kind, Kind::Bit | Kind::Float32 | Kind::Float64 | Kind::Text | Kind::Variant) {
-        return Err(words.malformed(what, format!("{kind:?}"), "whole numbers are needed: write it as vtktypeint64"));
-    }
+    let Some(number) = kind.number().filter(|n| !n.is_real()) else {
+        let found = kind.number().map_or_else(|| format!("{kind:?}"), |number| format!("{number:?}"));
+        return Err(words.malformed(what, found, "whole numbers are needed: write it as vtktypeint64"));
+    };
     if encoding == Encoding::Ascii {
         return words.numbers(what, count);
     }
-    let (bytes, order) = (binary(words, kind, what, count)?, ByteOrder::Big);
-    Ok(match kind {
-        Kind::Int8 => numbers!(i8, bytes, order, i64::from),
-        Kind::UInt8 => numbers!(u8, bytes, order, i64::from),
-        Kind::Int16 => numbers!(i16, bytes, order, i64::from),
-        Kind::UInt16 => numbers!(u16, bytes, order, i64::from),
-        Kind::Int32 => numbers!(i32, bytes, order, i64::from),
-        Kind::UInt32 => numbers!(u32, bytes, order, i64::from),
-        Kind::UInt64 => numbers!(u64, bytes, order, |v| i64::try_from(v).unwrap_or(i64::MAX)),
-        _ => numbers!(i64, bytes, order, |v| v),
-    })
+    let bytes = binary(words, kind, what, count)?;
+    // None for reals alone, which were refused.
+    Ok(number.integers(bytes, ByteOrder::Big).unwrap_or_default())
 }
 
 /// The bytes of `count` values: they begin on the line after their heading.
@@ -136,7 +109,7 @@ fn binary<'a>(words: &mut Words<'a>, kind: Kind, what: &str, count: u64) -> Resu
     words.line();
     match kind {
         Kind::Bit => words.bytes(what, count.div_ceil(8), 1),
-        kind => words.bytes(what, count, kind.bits() / 8),
+        kind => words.bytes(what, count, kind.number().map_or(1, Number::size)),
     }
 }
 

@@ -6,6 +6,7 @@ use tetlux_mesh::{Field, Location};
 
 use super::Reader;
 use super::array::Kind;
+use crate::number::Number;
 use crate::words::Words;
 use crate::{IngestError, MixedMesh, StructuredGrid};
 
@@ -135,7 +136,7 @@ fn scalars(reader: &mut Reader, tuples: u64) -> Result<Array, IngestError> {
 fn colors(reader: &mut Reader, tuples: u64) -> Result<Array, IngestError> {
     let name = name(reader)?;
     let components = reader.words.number("the components of the colours")?;
-    let mut array = values(reader, name, Kind::UInt8, components, tuples)?;
+    let mut array = values(reader, name, Kind::Of(Number::UInt8), components, tuples)?;
     if reader.is_ascii() {
         array.values.iter_mut().flatten().for_each(|v| *v = (*v * 255.0).round());
     }
@@ -146,7 +147,7 @@ fn colors(reader: &mut Reader, tuples: u64) -> Result<Array, IngestError> {
 fn skip_table(reader: &mut Reader) -> Result<(), IngestError> {
     name(reader)?;
     let entries: u64 = reader.words.number("the length of the lookup table")?;
-    reader.floats(Kind::UInt8, "a lookup table", entries.saturating_mul(4)).map(drop)
+    reader.floats(Kind::Of(Number::UInt8), "a lookup table", entries.saturating_mul(4)).map(drop)
 }
 
 /// Reads what follows FIELD: a name, the number of arrays, and these.

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::Reader;
 use super::array::{Encoding, Kind, integers};
+use crate::number::Number;
 use crate::{IngestError, MixedCells, Place, cell_type};
 
 /// Indices of all cells, as the file has them: a polyhedron's are its faces.
@@ -82,7 +83,7 @@ fn faces(indices: &[i64]) -> Option<Vec<&[i64]>> {
 }
 
 fn listed(reader: &mut Reader, count: u64, size: u64) -> Result<Cells, IngestError> {
-    let indices = integers(&mut reader.words, reader.encoding, Kind::Int32, "the cells", size)?;
+    let indices = integers(&mut reader.words, reader.encoding, Kind::Of(Number::Int32), "the cells", size)?;
     // Each cell takes a number at least, its length.
     let mut ranges = Vec::with_capacity(count.min(size) as usize);
     let mut at = 0;
@@ -141,7 +142,7 @@ fn part(reader: &mut Reader, name: &str, count: u64) -> Result<Vec<i64>, IngestE
 /// Reads what follows CELL_TYPES.
 pub(super) fn types(reader: &mut Reader) -> Result<Vec<i64>, IngestError> {
     let count = reader.words.number("the number of cell types")?;
-    integers(&mut reader.words, reader.encoding, Kind::Int32, "the types of the cells", count)
+    integers(&mut reader.words, reader.encoding, Kind::Of(Number::Int32), "the types of the cells", count)
 }
 
 impl Reader<'_> {

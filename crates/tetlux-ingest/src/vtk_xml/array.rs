@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use super::base64::Decoder;
 use super::compress::Compressor;
-use super::document::{DataArray, Document, Number, Storage};
+use super::document::{DataArray, Document, Storage};
 use crate::source::{ByteOrder, Source, excerpt, numbers};
 use crate::{IngestError, Place};
 
@@ -24,18 +24,7 @@ pub(super) fn floats(
         return parse(source, array, text, Some(expected));
     }
     let (bytes, order) = (Binary { source, document, array }.decode(Some(expected))?, document.order);
-    Ok(match array.number {
-        Number::Int8 => numbers!(i8, bytes, order, f64::from),
-        Number::UInt8 => numbers!(u8, bytes, order, f64::from),
-        Number::Int16 => numbers!(i16, bytes, order, f64::from),
-        Number::UInt16 => numbers!(u16, bytes, order, f64::from),
-        Number::Int32 => numbers!(i32, bytes, order, f64::from),
-        Number::UInt32 => numbers!(u32, bytes, order, f64::from),
-        Number::Int64 => numbers!(i64, bytes, order, |v| v as f64),
-        Number::UInt64 => numbers!(u64, bytes, order, |v| v as f64),
-        Number::Float32 => numbers!(f32, bytes, order, f64::from),
-        Number::Float64 => numbers!(f64, bytes, order, |v| v),
-    })
+    Ok(array.number.floats(&bytes, order))
 }
 
 /// The values of an array of whole numbers, those beyond an `i64` as its largest; it must have `expected` of them, if
@@ -46,7 +35,7 @@ pub(super) fn integers(
     array: &DataArray,
     expected: Option<u64>,
 ) -> Result<Vec<i64>, IngestError> {
-    if matches!(array.number, Number::Float32 | Number::Float64) {
+    if array.number.is_real() {
         let what = "an array of whole numbers of type";
         return Err(source.unsupported(Place::Byte(array.at), what, "Float32 or Float64", "write it as Int64"));
     }
@@ -54,17 +43,8 @@ pub(super) fn integers(
         return parse(source, array, text, expected);
     }
     let (bytes, order) = (Binary { source, document, array }.decode(expected)?, document.order);
-    Ok(match array.number {
-        Number::Int8 => numbers!(i8, bytes, order, i64::from),
-        Number::UInt8 => numbers!(u8, bytes, order, i64::from),
-        Number::Int16 => numbers!(i16, bytes, order, i64::from),
-        Number::UInt16 => numbers!(u16, bytes, order, i64::from),
-        Number::Int32 => numbers!(i32, bytes, order, i64::from),
-        Number::UInt32 => numbers!(u32, bytes, order, i64::from),
-        Number::Int64 => numbers!(i64, bytes, order, |v| v),
-        Number::UInt64 => numbers!(u64, bytes, order, |v| i64::try_from(v).unwrap_or(i64::MAX)),
-        Number::Float32 | Number::Float64 => Vec::new(),
-    })
+    // None for reals alone, which were refused.
+    Ok(array.number.integers(&bytes, order).unwrap_or_default())
 }
 
 /// Numbers in words.

@@ -10,6 +10,7 @@ use quick_xml::reader::Reader;
 use super::compress::Compressor;
 use super::lattice::{Extent, Lattice};
 use super::tag::Tag;
+use crate::number::Number;
 use crate::source::{ByteOrder, Source};
 use crate::{IngestError, Place};
 
@@ -120,21 +121,6 @@ pub(super) struct DataArray<'a> {
     pub(super) steps: Option<Vec<usize>>,
     /// Byte offset of the end of its tag.
     pub(super) at: u64,
-}
-
-/// The type of an array's numbers.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Number {
-    Int8,
-    UInt8,
-    Int16,
-    UInt16,
-    Int32,
-    UInt32,
-    Int64,
-    UInt64,
-    Float32,
-    Float64,
 }
 
 /// Where an array's data are.
@@ -287,34 +273,6 @@ impl<'a> DataArray<'a> {
             && data.trim_ascii().is_empty()
         {
             *data = text;
-        }
-    }
-}
-
-impl Number {
-    pub(super) fn of(name: &str) -> Option<Number> {
-        Some(match name {
-            "Int8" => Number::Int8,
-            "UInt8" => Number::UInt8,
-            "Int16" => Number::Int16,
-            "UInt16" => Number::UInt16,
-            "Int32" => Number::Int32,
-            "UInt32" => Number::UInt32,
-            "Int64" => Number::Int64,
-            "UInt64" => Number::UInt64,
-            "Float32" => Number::Float32,
-            "Float64" => Number::Float64,
-            _ => return None,
-        })
-    }
-
-    /// Bytes of one.
-    pub(super) fn size(self) -> u64 {
-        match self {
-            Number::Int8 | Number::UInt8 => 1,
-            Number::Int16 | Number::UInt16 => 2,
-            Number::Int32 | Number::UInt32 | Number::Float32 => 4,
-            Number::Int64 | Number::UInt64 | Number::Float64 => 8,
         }
     }
 }

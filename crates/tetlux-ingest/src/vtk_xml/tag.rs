@@ -7,8 +7,9 @@ use quick_xml::XmlVersion;
 use quick_xml::events::BytesStart;
 
 use super::compress::Compressor;
-use super::document::{Appended, DataArray, Document, Kind, Listed, Number, Piece, Section, Storage};
+use super::document::{Appended, DataArray, Document, Kind, Listed, Piece, Section, Storage};
 use super::lattice::{Extent, Lattice};
+use crate::number::Number;
 use crate::source::{ByteOrder, Source};
 use crate::{IngestError, Place};
 
@@ -78,7 +79,7 @@ impl<'s> Tag<'s, '_> {
 
     pub(super) fn data_array(&self, section: Section) -> Result<DataArray<'s>, IngestError> {
         let number = self.attribute("type")?.unwrap_or_default();
-        let number = Number::of(&number).ok_or_else(|| {
+        let number = Number::of_vtk_xml(&number).ok_or_else(|| {
             self.unsupported("an array of type", &number, "write it as Int8 to UInt64, Float32 or Float64")
         })?;
         let components = match self.attribute("NumberOfComponents")? {
