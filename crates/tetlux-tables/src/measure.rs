@@ -24,7 +24,7 @@ const WIDGET_LENGTH: f64 = 1.0;
 ///
 /// Tables of q and psi: `w_b`, the error of the blended colour for luminances in [0, 1], for a and b from 0 and 1e-8 to
 /// 1e6, with bands around a = b and b = sqrt a. F and B: the larger error over the largest length. Widgets: `w_b`, for
-/// segments of at least [`WIDGET_LENGTH`]. Transfer functions: colour and alpha, for lengths over five decades.
+/// segments of at least `WIDGET_LENGTH`. Transfer functions: colour and alpha, for lengths over five decades.
 ///
 /// # Errors
 /// [`SpecError`] if the table's transfer function is none; a table that was built or read has one.
