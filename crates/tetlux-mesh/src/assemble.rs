@@ -29,6 +29,9 @@ pub struct Assembly {
     pub faces_folded: usize,
 }
 
+/// Most points, and most cells: u32::MAX is NONE, and half-faces, four a cell, are numbered with a bit to spare.
+const LARGEST: usize = u32::MAX as usize / 8;
+
 impl TetMesh {
     /// Assembles a mesh of points in world space, cells by point index in any orientation, and fields.
     ///
@@ -37,10 +40,8 @@ impl TetMesh {
     /// their volume; faces matched. [`assembly`](Self::assembly) counts it all.
     pub fn assemble(points: &[DVec3], cells: &[[u32; 4]], fields: Vec<Field>) -> Result<TetMesh, MeshError> {
         for (what, count) in [("points", points.len()), ("cells", cells.len())] {
-            // u32::MAX is NONE, and half-faces are counted four a cell.
-            let limit = u32::MAX as usize / 4;
-            if count > limit {
-                return Err(MeshError::TooLarge { what, count, limit });
+            if count > LARGEST {
+                return Err(MeshError::TooLarge { what, count, limit: LARGEST });
             }
         }
         for field in &fields {
@@ -133,9 +134,8 @@ fn recentre(points: &[DVec3]) -> Result<(DVec3, Vec<Vec3>), MeshError> {
 /// For each point the first of those that coincide with it, itself if none does: the points that
 /// [`TetMesh::assemble`] makes one. Fails where that does: at a coordinate that is not finite or out of range.
 pub fn coincident(points: &[DVec3]) -> Result<Vec<u32>, MeshError> {
-    let limit = u32::MAX as usize / 4;
-    if points.len() > limit {
-        return Err(MeshError::TooLarge { what: "points", count: points.len(), limit });
+    if points.len() > LARGEST {
+        return Err(MeshError::TooLarge { what: "points", count: points.len(), limit: LARGEST });
     }
     recentre(points).map(|(_, local)| first_coincident(&local))
 }

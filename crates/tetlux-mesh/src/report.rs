@@ -57,7 +57,7 @@ impl Report {
             mean_edge_length: mesh.mean_edge_length(),
             volume: volume / 6.0,
             boundary_faces: boundary.len(),
-            components: components(&mesh.neighbors),
+            components: mesh.components(),
             quads_split_both_ways: quads_split_both_ways(&boundary),
         }
     }
@@ -80,6 +80,18 @@ impl Report {
         .filter(|&(count, _)| count > 0)
         .map(|(count, what)| format!("{count} {what}"))
         .collect()
+    }
+}
+
+impl TetMesh {
+    /// Sets of cells connected through faces.
+    pub fn components(&self) -> usize {
+        components(&self.neighbors)
+    }
+
+    /// Quadrilaterals of the boundary split along both diagonals: see [`Report::quads_split_both_ways`].
+    pub fn quads_split_both_ways(&self) -> usize {
+        quads_split_both_ways(&boundary_faces(self))
     }
 }
 

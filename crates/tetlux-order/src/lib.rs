@@ -17,11 +17,18 @@
 //! ```
 
 mod centroid;
+mod clock;
+mod coverage;
+mod exact;
 mod facts;
+mod gaps;
 mod method;
 mod order;
 mod orderer;
+mod power;
 mod sampling;
+mod search;
+mod signs;
 pub mod verify;
 
 pub use centroid::centroid;
