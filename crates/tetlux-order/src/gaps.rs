@@ -2,7 +2,7 @@
 //! 2004, Image-space visibility ordering for cell projection volume rendering of unstructured data).
 //!
 //! The picture is worked through in bands of rows, each on its own. A band first counts the faces through which each
-//! ray enters the mesh; only tiles in which some ray enters twice are then looked at closely: each such ray's
+//! ray enters the mesh; only tiles in which some ray does so twice are then looked at closely: each such ray's
 //! crossings of the boundary are sorted by depth and paired.
 
 mod walk;
@@ -18,6 +18,9 @@ use crate::signs::{is_entry, is_exit};
 
 /// Height of a band, and width of a tile, in pixels.
 const BAND: u32 = 16;
+
+/// So many counted crossings leave no gap.
+const SIMPLE: u8 = 1;
 
 /// A ray's passage through a face of the boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,9 +50,9 @@ pub(crate) struct Gaps {
 /// What one band needs and finds.
 #[derive(Debug, Default)]
 struct Band {
-    /// Entries of each pixel.
+    /// Entries of each pixel, and exits if the eye is inside.
     counts: Vec<u8>,
-    /// Tiles with a pixel that has enough of them.
+    /// Tiles with a pixel of more than [`SIMPLE`] of them.
     tiles: Vec<bool>,
     crossings: Vec<Crossing>,
     /// Where each pixel's crossings end in `sorted`.
@@ -65,8 +68,8 @@ struct View<'a> {
     codes: &'a [u8],
     rays: &'a Rays,
     bounds: &'a [Option<Pixels>],
-    /// A pixel with more entries than this is looked at.
-    simple: u8,
+    /// The eye is in or on a cell: rays leave before they enter.
+    inside: bool,
     tolerance: f64,
 }
 
@@ -93,7 +96,7 @@ impl Gaps {
             codes,
             rays,
             bounds: &self.bounds,
-            simple: if inside { 0 } else { 1 },
+            inside,
             tolerance: tolerance(facts, rays),
         };
         let (starts, faces) = (&self.starts, &self.faces);
@@ -191,15 +194,20 @@ impl Band {
         }
     }
 
-    /// Counts the entries of every pixel, and marks the tiles to be looked at; false if there are none.
+    /// Counts every pixel's entries, exits too if there may be more of them, and marks the tiles to be looked at; false
+    /// if there are none.
     fn count(&mut self, view: &View, faces: &[u32], area: &Pixels) -> bool {
         let width = area.columns.len();
         self.counts.clear();
         self.counts.resize(width * area.rows.len(), 0);
-        for &face in faces.iter().filter(|&&face| is_entry(view.codes[face as usize])) {
+        for &face in faces {
+            let entry = is_entry(view.codes[face as usize]);
+            if !entry && !view.inside {
+                continue;
+            }
             let Some(pixels) = view.pixels(face, area) else { continue };
             let (_, corners) = corners(view.mesh, view.facts, face as usize);
-            view.triangle(corners, true).cover(view.rays, pixels, |row, columns| {
+            view.triangle(corners, entry).cover(view.rays, pixels, |row, columns| {
                 let start = (row - area.rows.start) as usize * width;
                 for count in &mut self.counts[start + columns.start as usize..start + columns.end as usize] {
                     *count = count.saturating_add(1);
@@ -210,7 +218,7 @@ impl Band {
         self.tiles.resize(width.div_ceil(BAND as usize), false);
         for row in self.counts.chunks(width) {
             for (tile, counts) in self.tiles.iter_mut().zip(row.chunks(BAND as usize)) {
-                *tile |= counts.iter().any(|&count| count > view.simple);
+                *tile |= counts.iter().any(|&count| count > SIMPLE);
             }
         }
         self.tiles.contains(&true)
@@ -233,7 +241,7 @@ impl Band {
                 let start = (row - area.rows.start) as usize * width;
                 for column in columns {
                     let pixel = start + column as usize;
-                    if self.counts[pixel] > view.simple {
+                    if self.counts[pixel] > SIMPLE {
                         let depth = depth.at(view.rays, column, row);
                         self.crossings.push(Crossing { depth, cell, pixel: pixel as u32, entry });
                     }
