@@ -14,11 +14,12 @@ mod ramp;
 mod record;
 #[cfg(test)]
 mod tests;
+mod vector;
 mod walk;
 
 use std::ops::Range;
 
-use fearless_simd::{Level, Simd, SimdBase, dispatch};
+use fearless_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
 
 use crate::Job;
@@ -26,7 +27,7 @@ use crate::stage::Stages;
 use bins::{Bins, TILE};
 use ramp::Ramp;
 use record::{Record, SetUp};
-use walk::{Light, PIXELS, Tile, Walk};
+use walk::{Light, Walk};
 
 /// Cells that are set up at a time: bounds the memory of their records, 128 bytes a cell.
 const BATCH: usize = 1 << 20;
@@ -53,32 +54,38 @@ fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> Vec<[f32; 4]> {
     };
     let points = stages.run("project", || record::points(job.mesh, eye));
     let set_up = SetUp { mesh: job.mesh, points: &points, eye, pieces: job.pieces, size: job.size };
-    let [columns, rows] = bins::tiles(job.size).map(|n| n as usize);
-    let mut tiles = vec![Tile([[0.0; PIXELS]; 4]); columns * rows];
+    let columns = bins::tiles(job.size)[0] as usize;
+    let mut pixels = vec![[0.0; 4]; job.size[0] as usize * job.size[1] as usize];
     for batch in batches(job.order.len(), job.groups) {
-        let records: Vec<Record> =
-            stages.run("set up", || job.order[batch.clone()].par_iter().map(|&cell| set_up.record(cell)).collect());
+        let records = stages.run("set up", || set_up.records(level, &job.order[batch.clone()]));
         let bins = stages.run("bin", || Bins::new(&records, job.size));
         let groups = groups_in(job.groups, &batch);
         stages.run("draw", || {
-            tiles.par_iter_mut().enumerate().for_each(|(index, tile)| {
+            rows_of_tiles(&mut pixels, job.size).into_par_iter().enumerate().for_each(|(index, mut rows)| {
                 let origin = [index % columns, index / columns].map(|i| i as u32 * TILE);
                 let cells = bins.of(index);
                 if eye.orthographic {
-                    dispatch!(level, simd => draw_tile::<_, true>(simd, &light, origin, &records, cells, &groups, tile));
+                    dispatch!(level, simd => draw_tile::<_, true>(simd, &light, origin, &records, cells, &groups, &mut rows));
                 } else {
-                    dispatch!(level, simd => draw_tile::<_, false>(simd, &light, origin, &records, cells, &groups, tile));
+                    dispatch!(level, simd => draw_tile::<_, false>(simd, &light, origin, &records, cells, &groups, &mut rows));
                 }
             });
         });
     }
-    let lanes = dispatch!(level, simd => lanes(simd));
-    stages.run("resolve", || resolve(&tiles, job.size, lanes))
+    pixels
 }
 
-#[inline(always)]
-fn lanes<S: Simd>(_: S) -> usize {
-    S::f32s::LEN
+/// For each tile its rows of the picture.
+fn rows_of_tiles(pixels: &mut [[f32; 4]], size: [u32; 2]) -> Vec<Vec<&mut [[f32; 4]]>> {
+    let [columns, rows] = bins::tiles(size).map(|n| n as usize);
+    let mut tiles: Vec<Vec<&mut [[f32; 4]]>> = Vec::new();
+    tiles.resize_with(columns * rows, || Vec::with_capacity(TILE as usize));
+    for (y, row) in pixels.chunks_mut(size[0] as usize).enumerate() {
+        for (part, tile) in row.chunks_mut(TILE as usize).zip(&mut tiles[y / TILE as usize * columns..]) {
+            tile.push(part);
+        }
+    }
+    tiles
 }
 
 /// Ranges of the order of about [`BATCH`] cells that cut no group.
@@ -111,46 +118,28 @@ fn draw_tile<S: Simd, const ORTHOGRAPHIC: bool>(
     records: &[Record],
     cells: &[u32],
     groups: &[Range<u32>],
-    tile: &mut Tile,
+    rows: &mut [&mut [[f32; 4]]],
 ) {
-    let mut walk = Walk::new(simd, light, origin, tile);
+    let mut walk = Walk::new(simd, light, origin, rows);
     let mut rest = cells;
     let mut groups = groups;
-    while let [cell, after @ ..] = rest
+    while let [cell, ..] = rest
         && !walk.is_done()
     {
         while groups.first().is_some_and(|group| group.end <= *cell) {
             groups = &groups[1..];
         }
+        let start = groups.first().map_or(u32::MAX, |group| group.start);
+        let until = |end: u32| rest.partition_point(|&i| i < end);
         if let Some(group) = groups.first().filter(|group| group.start <= *cell) {
-            let (run, after) = rest.split_at(rest.partition_point(|&i| i < group.end));
+            let (run, after) = rest.split_at(until(group.end));
             walk.add_sorted::<ORTHOGRAPHIC>(records, run);
             rest = after;
         } else {
-            walk.add::<ORTHOGRAPHIC>(&records[*cell as usize]);
+            let (run, after) = rest.split_at(until(start));
+            walk.add::<ORTHOGRAPHIC>(records, run);
             rest = after;
         }
     }
-}
-
-/// The pixels of all tiles, row by row.
-fn resolve(tiles: &[Tile], size: [u32; 2], lanes: usize) -> Vec<[f32; 4]> {
-    let [width, height] = size.map(|n| n as usize);
-    let columns = width.div_ceil(TILE as usize);
-    // Where each pixel of a tile, row by row, is in its vectors.
-    let mut places = [[0; TILE as usize]; TILE as usize];
-    for index in 0..PIXELS {
-        let [x, y] = walk::place(index, lanes);
-        places[y][x] = index;
-    }
-    let mut pixels = vec![[0.0; 4]; width * height];
-    pixels.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-        let tiles = &tiles[y / TILE as usize * columns..][..columns];
-        for (part, tile) in row.chunks_mut(TILE as usize).zip(tiles) {
-            for (pixel, &i) in part.iter_mut().zip(&places[y % TILE as usize]) {
-                *pixel = [0, 1, 2, 3].map(|c| tile.0[c][i]);
-            }
-        }
-    });
-    pixels
+    walk.finish(rows);
 }

@@ -21,13 +21,11 @@ const FIRST_COLUMN: u64 = 0x1111_1111_1111_1111;
 const BLOCK_COLUMNS: [f32; 16] = [0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0];
 const BLOCK_ROWS: [f32; 16] = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 3.0];
 
+/// Records that are loaded at once.
+const AHEAD: usize = 32;
+
 /// So few blocks are sooner tried than sorted out.
 const FEW: u32 = 2;
-
-/// Premultiplied colour and alpha of a tile's pixels, block by block.
-#[derive(Clone)]
-#[repr(align(64))]
-pub(crate) struct Tile(pub(crate) [[f32; PIXELS]; 4]);
 
 /// What all tiles of a picture have in common.
 pub(crate) struct Light<'a> {
@@ -40,31 +38,41 @@ pub(crate) struct Light<'a> {
     pub(crate) opaque: f32,
 }
 
-/// Pixel of the tile, row by row, that is lane `lane` of block `block`, in vectors of `lanes`.
-pub(crate) fn place(index: usize, lanes: usize) -> [usize; 2] {
-    let (block, lane) = (index / lanes, index % lanes);
-    let columns = COLUMNS as usize;
-    [block % columns * WIDTH + lane % WIDTH, block / columns * (lanes / WIDTH) + lane / WIDTH]
-}
-
 /// A tile being drawn.
 pub(crate) struct Walk<'a, S: Simd> {
-    pub(crate) simd: S,
-    pub(crate) light: &'a Light<'a>,
+    simd: S,
+    light: &'a Light<'a>,
     /// The tile's first pixel.
-    pub(crate) origin: [u32; 2],
-    pub(crate) tile: &'a mut Tile,
+    origin: [u32; 2],
+    /// Premultiplied colour and alpha of the pixels, block by block.
+    tile: [[f32; PIXELS]; 4],
     /// Blocks with pixels that are not opaque.
     alive: u64,
+    /// Length of the rays for a depth of 1.
     stretch: [f32; PIXELS],
+}
+
+/// Where in a tile's vectors of so many lanes the pixel at (x, y) is.
+#[inline(always)]
+fn place(x: usize, y: usize, lanes: usize) -> usize {
+    let rows = lanes / WIDTH;
+    (y / rows * COLUMNS as usize + x / WIDTH) * lanes + y % rows * WIDTH + x % WIDTH
 }
 
 impl<'a, S: Simd> Walk<'a, S> {
     #[inline(always)]
-    pub(crate) fn new(simd: S, light: &'a Light<'a>, origin: [u32; 2], tile: &'a mut Tile) -> Self {
+    pub(crate) fn new(simd: S, light: &'a Light<'a>, origin: [u32; 2], rows: &[&mut [[f32; 4]]]) -> Self {
         let lanes = S::f32s::LEN;
         let blocks = PIXELS / lanes;
-        let mut walk = Walk { simd, light, origin, tile, alive: u64::MAX >> (64 - blocks), stretch: [1.0; PIXELS] };
+        let alive = u64::MAX >> (64 - blocks);
+        let mut walk = Walk { simd, light, origin, tile: [[0.0; PIXELS]; 4], alive, stretch: [1.0; PIXELS] };
+        for (y, row) in rows.iter().enumerate() {
+            for (x, pixel) in row.iter().enumerate() {
+                for i in 0..4 {
+                    walk.tile[i][place(x, y, lanes)] = pixel[i];
+                }
+            }
+        }
         let [x, y] = [0, 1].map(|axis| origin[axis] as f32 + 0.5 - light.middle[axis]);
         for block in 0..blocks {
             let (x, y) = walk.places(block, x, y);
@@ -75,6 +83,17 @@ impl<'a, S: Simd> Walk<'a, S> {
             walk.store(block, &pixels);
         }
         walk
+    }
+
+    /// Writes the pixels to the tile's rows of the picture.
+    #[inline(always)]
+    pub(crate) fn finish(&self, rows: &mut [&mut [[f32; 4]]]) {
+        for (y, row) in rows.iter_mut().enumerate() {
+            for (x, pixel) in row.iter_mut().enumerate() {
+                let at = place(x, y, S::f32s::LEN);
+                *pixel = [self.tile[0][at], self.tile[1][at], self.tile[2][at], self.tile[3][at]];
+            }
+        }
     }
 
     /// Whether every pixel is opaque.
@@ -100,7 +119,7 @@ impl<'a, S: Simd> Walk<'a, S> {
 
     #[inline(always)]
     fn pixels(&self, block: usize) -> Pixels<S> {
-        let [r, g, b, a] = &self.tile.0;
+        let [r, g, b, a] = &self.tile;
         [self.load(r, block), self.load(g, block), self.load(b, block), self.load(a, block)]
     }
 
@@ -109,7 +128,7 @@ impl<'a, S: Simd> Walk<'a, S> {
     fn store(&mut self, block: usize, pixels: &Pixels<S>) {
         let lanes = S::f32s::LEN;
         for i in 0..4 {
-            pixels[i].store_slice(&mut self.tile.0[i][block * lanes..][..lanes]);
+            pixels[i].store_slice(&mut self.tile[i][block * lanes..][..lanes]);
         }
         if pixels[3].simd_ge(self.light.opaque).all_true() {
             self.alive &= !(1 << block);
@@ -171,19 +190,28 @@ impl<'a, S: Simd> Walk<'a, S> {
         seen & boxed
     }
 
-    /// Composites a cell behind what is there.
+    /// Composites cells behind what is there, one behind the other.
     #[inline(always)]
-    pub(crate) fn add<const ORTHOGRAPHIC: bool>(&mut self, record: &Record) {
-        let mut blocks = self.blocks(record);
-        let (x, y) = self.from(record);
-        while blocks != 0 {
-            let block = blocks.trailing_zeros() as usize;
-            blocks &= blocks - 1;
-            let stretch = self.load(&self.stretch, block);
-            if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, self.places(block, x, y), stretch) {
-                let mut pixels = self.pixels(block);
-                self.integrate(record, &segments, &mut pixels);
-                self.store(block, &pixels);
+    pub(crate) fn add<const ORTHOGRAPHIC: bool>(&mut self, records: &[Record], run: &[u32]) {
+        for cells in run.chunks(AHEAD) {
+            touch(records, cells);
+            for &i in cells {
+                let record = &records[i as usize];
+                let mut blocks = self.blocks(record);
+                let (x, y) = self.from(record);
+                while blocks != 0 {
+                    let block = blocks.trailing_zeros() as usize;
+                    blocks &= blocks - 1;
+                    let (places, stretch) = (self.places(block, x, y), self.load(&self.stretch, block));
+                    if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch) {
+                        let mut pixels = self.pixels(block);
+                        self.integrate(record, &segments, &mut pixels);
+                        self.store(block, &pixels);
+                    }
+                }
+            }
+            if self.is_done() {
+                return;
             }
         }
     }
@@ -201,6 +229,18 @@ impl<'a, S: Simd> Walk<'a, S> {
             add_cut_segment(self.simd, ramps, record.base, self.light.model, front, back, length, pixels);
         }
     }
+}
+
+/// Loads records before they are needed, so that the processor waits for all at once.
+#[inline(always)]
+fn touch(records: &[Record], cells: &[u32]) {
+    let mut sum = 0.0;
+    for &i in cells {
+        let record = &records[i as usize];
+        // In both of its cache lines.
+        sum += record.planes[0][0] + record.level;
+    }
+    std::hint::black_box(sum);
 }
 
 /// A cell's contribution to a block: the middle's depth, premultiplied colour and alpha.
