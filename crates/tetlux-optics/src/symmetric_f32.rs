@@ -21,10 +21,12 @@ use crate::segment_f32::{clean, horner4, horner5, horner6, weights_direct};
 #[cfg(test)]
 mod tests;
 
-/// 8 terms for x <= 0.5, error 8.9e-7 of alpha: e^1.., then x^2 e^0.., then x^4.
-const SHIFT_8_0: [f32; 4] = [0.33333245, 0.033333275, 0.0023903833, 1.3216006e-4];
-const SHIFT_8_1: [f32; 3] = [-0.16666563, 0.008352269, 5.974582e-4];
-const SHIFT_8_2: f32 = -0.004180521;
+/// F of [`shift_8`], terms in e^1.. (8 terms in all for x <= 0.5, error 8.9e-7 of alpha).
+pub const SHIFT_8_0: [f32; 4] = [0.33333245, 0.033333275, 0.0023903833, 1.3216006e-4];
+/// Its terms in x^2 e^0...
+pub const SHIFT_8_1: [f32; 3] = [-0.16666563, 0.008352269, 5.974582e-4];
+/// Its term in x^4.
+pub const SHIFT_8_2: f32 = -0.004180521;
 
 /// 15 terms for x <= 1, error 1.9e-8 of alpha: e^1.., then x^2 e^0.., x^4 e^0.., x^6.
 const SHIFT_15_0: [f32; 6] = [0.33333334, 0.033333328, 0.0023808074, 1.3228777e-4, 6.0855546e-6, 2.3003716e-7];
@@ -32,15 +34,18 @@ const SHIFT_15_1: [f32; 5] = [-0.16666669, 0.008333145, 5.9520657e-4, 3.3383665e
 const SHIFT_15_2: [f32; 3] = [-0.004166474, 7.491231e-5, 4.1784674e-6];
 const SHIFT_15_3: f32 = -3.754286e-5;
 
-/// 19 terms for x <= 3, error 5.2e-6 of alpha: e^1.., then x^2 e^0.., x^4 e^0.., x^6 e^0...
-const SHIFT_19_0: [f32; 7] =
+/// F of [`shift_19`], terms in e^1.. (19 terms in all for x <= 3, error 5.2e-6 of alpha).
+pub const SHIFT_19_0: [f32; 7] =
     [0.33333325, 0.03333451, 0.0023810465, 1.3196279e-4, 6.0035845e-6, 2.480651e-7, 8.142434e-9];
-const SHIFT_19_1: [f32; 6] = [-0.16667941, 0.008333603, 5.9413724e-4, 3.3007e-5, 1.6031001e-6, 6.097493e-8];
-const SHIFT_19_2: [f32; 4] = [-0.004154674, 7.427586e-5, 4.3827526e-6, 1.9910162e-7];
-const SHIFT_19_3: [f32; 2] = [-3.9937688e-5, 3.645473e-7];
+/// Its terms in x^2 e^0...
+pub const SHIFT_19_1: [f32; 6] = [-0.16667941, 0.008333603, 5.9413724e-4, 3.3007e-5, 1.6031001e-6, 6.097493e-8];
+/// Its terms in x^4 e^0...
+pub const SHIFT_19_2: [f32; 4] = [-0.004154674, 7.427586e-5, 4.3827526e-6, 1.9910162e-7];
+/// Its terms in x^6 e^0...
+pub const SHIFT_19_3: [f32; 2] = [-3.9937688e-5, 3.645473e-7];
 
 /// 2 sinh(x/2) = x (c_0 + c_1 x^2 + ..), x <= 3. Relative error 1.5e-8.
-const TWO_SINH_HALF: [f32; 6] = [1.0, 0.041666668, 5.2083336e-4, 3.1001985e-6, 1.0764578e-8, 2.446495e-11];
+pub const TWO_SINH_HALF: [f32; 6] = [1.0, 0.041666668, 5.2083336e-4, 3.1001985e-6, 1.0764578e-8, 2.446495e-11];
 
 /// Beyond this extinction times length at an end, cutting costs more than [`weights_direct`].
 const MAX_CUT: f32 = 24.0;

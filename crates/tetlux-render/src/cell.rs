@@ -5,7 +5,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use crate::device_view::DeviceView;
+use crate::device_view::{DeviceView, Lens};
 
 /// A vertex in eye space and in pixels.
 #[derive(Clone, Copy, Debug)]
@@ -13,13 +13,6 @@ pub(crate) struct Vertex {
     pub(crate) frame: Vec3,
     pub(crate) eye: Vec3,
     pub(crate) pixel: Vec2,
-}
-
-/// What the functions of this module need to know of the view.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lens {
-    pub(crate) view: DeviceView,
-    pub(crate) orthographic: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

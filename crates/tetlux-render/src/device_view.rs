@@ -1,10 +1,13 @@
 //! The view as devices have it.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
+#[cfg(test)]
+use glam::Vec3;
 use tetlux_mesh::TetMesh;
 use tetlux_scene::View;
 
 use crate::device_mesh::DeviceMesh;
+use crate::eye_space::LEAST_NEAR;
 
 /// Laid out as the shader's `View` (shaders/lib/view.wgsl), where its members are explained.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -20,9 +23,12 @@ pub(crate) struct DeviceView {
     pub(crate) near: f32,
 }
 
-/// Depth in device units before which a perspective view shows nothing even if the scene asks for none: a millionth
-/// of the mesh, so that depths have an inverse.
-const LEAST_NEAR: f64 = 1e-6;
+/// What the shaders know of the view.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lens {
+    pub(crate) view: DeviceView,
+    pub(crate) orthographic: bool,
+}
 
 impl DeviceView {
     pub(crate) fn new(view: &View, mesh: &TetMesh, device: &DeviceMesh) -> DeviceView {
@@ -45,6 +51,7 @@ impl DeviceView {
         }
     }
 
+    #[cfg(test)]
     pub(crate) fn axis(row: [f32; 4]) -> Vec3 {
         Vec3::new(row[0], row[1], row[2])
     }

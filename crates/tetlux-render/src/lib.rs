@@ -27,18 +27,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(test)]
 mod cell;
-mod cpu;
 mod device_mesh;
 mod device_view;
 mod error;
+mod eye_space;
 mod gpu;
 #[cfg(test)]
 mod layout_tests;
 mod stage;
+mod tiles;
 
 pub use error::RenderError;
 pub use stage::{Stage, Stages};
+
+use std::ops::Range;
 
 use tetlux_image::Image;
 use tetlux_mesh::TetMesh;
@@ -46,9 +50,9 @@ use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::Eye;
 use tetlux_scene::{Backend, Device, Integrator, Order, Plan, Scene};
 
-use crate::cell::Lens;
 use crate::device_mesh::DeviceMesh;
-use crate::device_view::DeviceView;
+use crate::device_view::{DeviceView, Lens};
+use crate::eye_space::EyeSpace;
 
 /// A picture and the time it took.
 #[derive(Debug)]
@@ -63,10 +67,16 @@ pub struct Frame {
 struct Job<'a> {
     mesh: &'a DeviceMesh,
     lens: Lens,
+    eye: EyeSpace,
     pieces: &'a [Piece],
     weights: Weights,
     /// The cells to draw, nearest first.
     order: &'a [u32],
+    /// Ranges of positions in `order`, ascending and apart, whose cells have no order among themselves: only the CPU
+    /// back end sorts them along each ray.
+    groups: &'a [Range<u32>],
+    /// Largest error of a pixel that is allowed.
+    max_error: f64,
     /// Width and height in pixels.
     size: [u32; 2],
 }
@@ -117,10 +127,21 @@ impl Renderer {
             Integrator::Direct => Weights::Direct,
             Integrator::Average => Weights::Average,
         };
-        let job = Job { mesh: &device_mesh, lens, pieces: &pieces, weights, order: &order, size: view.size };
+        let everything = [0..order.len() as u32];
+        let job = Job {
+            mesh: &device_mesh,
+            lens,
+            eye: EyeSpace::new(view, mesh, &device_mesh),
+            pieces: &pieces,
+            weights,
+            order: &order,
+            groups: if plan.order == Order::Pixel { &everything } else { &[] },
+            max_error: scene.method.max_error,
+            size: view.size,
+        };
         let pixels = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(&job, &mut stages)?,
-            Backend::Cpu | Backend::Auto => stages.run("draw", || cpu::draw(&job, plan.order == Order::Pixel)),
+            Backend::Cpu | Backend::Auto => tiles::draw(&job, &mut stages),
         };
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
         Ok(Frame { image, stages: stages.into_vec() })

@@ -19,12 +19,19 @@ pub struct Stage {
 pub struct Stages(Vec<Stage>);
 
 impl Stages {
-    /// Runs a stage and notes its time.
+    /// Runs a stage and notes its time, beside that of earlier runs under the same name.
     pub fn run<T>(&mut self, name: &'static str, work: impl FnOnce() -> T) -> T {
         let (wall, cpu) = (Instant::now(), processor_seconds());
         let result = work();
         let cpu = processor_seconds().zip(cpu).map(|(end, start)| end - start);
-        self.0.push(Stage { name, wall: wall.elapsed().as_secs_f64(), cpu });
+        let wall = wall.elapsed().as_secs_f64();
+        match self.0.iter_mut().find(|stage| stage.name == name) {
+            Some(stage) => {
+                stage.wall += wall;
+                stage.cpu = stage.cpu.zip(cpu).map(|(before, now)| before + now);
+            }
+            None => self.0.push(Stage { name, wall, cpu }),
+        }
         result
     }
 

@@ -1,0 +1,236 @@
+//! Ray segments through pieces of the transfer function, a vector of pixels at a time.
+//!
+//! On a piece luminance and extinction are linear in the scalar, so that one polynomial in optical depth does
+//! ([`tetlux_optics::symmetric_f32`]): no division, table or gather.
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+use tetlux_optics::symmetric_f32::{
+    SHIFT_8_0, SHIFT_8_1, SHIFT_8_2, SHIFT_19_0, SHIFT_19_1, SHIFT_19_2, SHIFT_19_3, TWO_SINH_HALF,
+};
+use tetlux_optics::transfer_f32::{Piece, Weights};
+
+/// A piece of the transfer function as the tiles need it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ramp {
+    /// Luminance and, last, extinction per device unit at the lower end.
+    low: [f32; 4],
+    /// Their change per unit of the scalar.
+    slope: [f32; 4],
+    /// Ends of the piece.
+    pub(crate) ends: [f32; 2],
+}
+
+/// Luminances are limited to this value, so that slopes stay finite.
+const BRIGHTEST: f32 = 1e25;
+
+/// Scalars lie between 0 and 1: where pieces without an end may end.
+const BEYOND: [f32; 2] = [-1.0, 2.0];
+
+impl Ramp {
+    pub(crate) fn new(piece: &Piece) -> Ramp {
+        let limited = |c: [f32; 4]| c.map(|x| x.min(BRIGHTEST));
+        let (low, high) = (limited(piece.low), limited(piece.high));
+        let slope = std::array::from_fn(|i| (high[i] - low[i]) * piece.s[2]);
+        Ramp { low, slope, ends: [piece.s[0].max(BEYOND[0]), piece.s[1].min(BEYOND[1])] }
+    }
+
+    /// Whether it is transparent throughout.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.low[3] == 0.0 && self.slope[3] == 0.0
+    }
+}
+
+/// Premultiplied colour and alpha of a vector of pixels.
+pub(crate) type Pixels<S> = [<S as Simd>::f32s; 4];
+
+/// e^y = polynomial in y, coefficients ascending, for -1/4 <= y <= 0. Relative error 3e-8.
+const EXP_THIN: [f32; 5] = [1.0, 0.99999696, 0.499903977, 0.165599704, 0.0367467701];
+
+/// The same for -3/2 <= y <= 0. Relative error 3e-7.
+const EXP: [f32; 8] =
+    [1.0, 0.999998629, 0.499982625, 0.166581169, 0.0414544679, 0.0080389278, 0.00115336594, 9.22695981e-05];
+
+/// Optical depth up to which the shortest polynomials hold.
+const THIN: f32 = 0.5;
+
+/// Optical depth of the pieces that dense segments are cut into: what the polynomials hold for.
+const CUT: f32 = 3.0;
+
+/// Pieces of a dense segment that are looked at: what lies behind seven of them shows by e^-21.
+const CUTS: usize = 7;
+
+#[inline(always)]
+fn horner<S: Simd, const N: usize>(simd: S, c: [f32; N], x: S::f32s) -> S::f32s {
+    let mut sum = S::f32s::splat(simd, c[N - 1]);
+    for i in (0..N - 1).rev() {
+        sum = sum.mul_add(x, c[i]);
+    }
+    sum
+}
+
+/// Composites what lies behind the pixels so far: a segment on one piece of the transfer function, `front` and `back`
+/// its scalars less the piece's lower end, of a length in device units, 0 where there is nothing.
+#[inline(always)]
+pub(crate) fn add_segment<S: Simd>(
+    simd: S,
+    ramp: &Ramp,
+    model: Weights,
+    front: S::f32s,
+    back: S::f32s,
+    length: S::f32s,
+    pixels: &mut Pixels<S>,
+) {
+    let half = S::f32s::splat(simd, 0.5);
+    let middle = (front + back) * half;
+    let rise = (back - front) * half;
+    // Optical depth and half the difference of the depths that the ends' extinctions would make.
+    let x = (middle.mul_add(ramp.slope[3], ramp.low[3]) * length).max(0.0);
+    let e = rise * ramp.slope[3] * length;
+    if !x.simd_gt(THIN).any_true() {
+        let root = horner(simd, EXP_THIN, x * -0.5);
+        let square = x * x;
+        let series = square.mul_add(TWO_SINH_HALF[2], TWO_SINH_HALF[1]).mul_add(square, TWO_SINH_HALF[0]);
+        let shift = match model {
+            Weights::Direct => {
+                let high = square.mul_add(SHIFT_8_2, horner(simd, SHIFT_8_1, e));
+                square.mul_add(high, e * horner(simd, SHIFT_8_0, e))
+            }
+            Weights::Average => S::f32s::splat(simd, 0.0),
+        };
+        add(simd, ramp, root * x * series, root * shift * rise, middle, pixels);
+    } else if model == Weights::Average {
+        // Squared five times; beyond a depth of 48 nothing is left.
+        let mut left = horner(simd, EXP, (x * (-1.0 / 32.0)).max(-1.5));
+        for _ in 0..5 {
+            left = left * left;
+        }
+        let root = horner(simd, EXP, x.min(CUT) * -0.5);
+        let thin = root * x * horner(simd, TWO_SINH_HALF, x * x);
+        let alpha = x.simd_lt(THIN).select(thin, S::f32s::splat(simd, 1.0) - left);
+        add(simd, ramp, alpha, S::f32s::splat(simd, 0.0), middle, pixels);
+    } else if !x.simd_gt(CUT).any_true() {
+        add_medium(simd, ramp, x, e, middle, rise, pixels);
+    } else {
+        // From the front pieces of depth CUT, until the end or nothing is left to be seen.
+        let (depth, change) = (x - e, e + e);
+        let (step, one) = (rise + rise, S::f32s::splat(simd, 1.0));
+        let mut from = S::f32s::splat(simd, 0.0);
+        for _ in 0..CUTS {
+            let start = change.mul_add(from, depth).max(0.0);
+            let root = start.mul_add(start, change * (2.0 * CUT)).max(0.0).sqrt();
+            let width = (S::f32s::splat(simd, 2.0 * CUT) / (start + root).max(1e-20)).min(one - from);
+            let turn = change * width * width * half;
+            let part = start.mul_add(width, turn).max(0.0).min(CUT);
+            let center = step.mul_add(width.mul_add(half, from), front);
+            add_medium(simd, ramp, part, turn, center, step * width * half, pixels);
+            from = from + width;
+            if !from.simd_lt(1.0).any_true() {
+                break;
+            }
+        }
+    }
+}
+
+/// A segment of depth x up to [`CUT`].
+#[inline(always)]
+fn add_medium<S: Simd>(
+    simd: S,
+    ramp: &Ramp,
+    x: S::f32s,
+    e: S::f32s,
+    middle: S::f32s,
+    rise: S::f32s,
+    pixels: &mut Pixels<S>,
+) {
+    let root = horner(simd, EXP, x * -0.5);
+    let square = x * x;
+    let high = square.mul_add(horner(simd, SHIFT_19_3, e), horner(simd, SHIFT_19_2, e));
+    let high = square.mul_add(high, horner(simd, SHIFT_19_1, e));
+    let shift = square.mul_add(high, e * horner(simd, SHIFT_19_0, e));
+    add(simd, ramp, root * x * horner(simd, TWO_SINH_HALF, square), root * shift * rise, middle, pixels);
+}
+
+/// Adds opacity `alpha` with the luminance at scalar `middle`, and its slope times `moment`.
+#[inline(always)]
+fn add<S: Simd>(
+    simd: S,
+    ramp: &Ramp,
+    alpha: S::f32s,
+    moment: S::f32s,
+    middle: S::f32s,
+    pixels: &mut Pixels<S>,
+) {
+    let left = S::f32s::splat(simd, 1.0) - pixels[3];
+    let weight = left * alpha;
+    let first = middle.mul_add(weight, left * moment);
+    for i in 0..3 {
+        pixels[i] = weight.mul_add(ramp.low[i], first.mul_add(ramp.slope[i], pixels[i]));
+    }
+    pixels[3] = pixels[3] + weight;
+}
+
+/// Composites a segment that meets several pieces, `ramps` ascending. Scalars are less `base`.
+#[inline(always)]
+pub(crate) fn add_cut_segment<S: Simd>(
+    simd: S,
+    ramps: &[Ramp],
+    base: f32,
+    model: Weights,
+    front: S::f32s,
+    back: S::f32s,
+    length: S::f32s,
+    pixels: &mut Pixels<S>,
+) {
+    let change = back - front;
+    let falling = change.simd_lt(0.0);
+    let zero = S::f32s::splat(simd, 0.0);
+    // Where the scalar is constant, any large slope makes the piece that begins at or below it the whole segment.
+    let per_scalar = S::f32s::splat(simd, 1.0) / change.max(-change).max(1e-20);
+    if !falling.all_true() {
+        let length = falling.select(zero, length);
+        let mut begin = zero;
+        for (i, ramp) in ramps.iter().enumerate() {
+            let end = if i + 1 < ramps.len() {
+                ((S::f32s::splat(simd, ramp.ends[1] - base) - front) * per_scalar).max(0.0).min(1.0)
+            } else {
+                S::f32s::splat(simd, 1.0)
+            };
+            add_part(simd, ramp, base, model, front, back, (end - begin) * length, pixels);
+            begin = end;
+        }
+    }
+    if falling.any_true() {
+        let length = falling.select(length, zero);
+        let mut begin = zero;
+        for (i, ramp) in ramps.iter().enumerate().rev() {
+            let end = if i > 0 {
+                ((front - (ramp.ends[0] - base)) * per_scalar).max(0.0).min(1.0)
+            } else {
+                S::f32s::splat(simd, 1.0)
+            };
+            add_part(simd, ramp, base, model, front, back, (end - begin) * length, pixels);
+            begin = end;
+        }
+    }
+}
+
+/// Composites the part of a segment that lies on one of several pieces.
+#[inline(always)]
+fn add_part<S: Simd>(
+    simd: S,
+    ramp: &Ramp,
+    base: f32,
+    model: Weights,
+    front: S::f32s,
+    back: S::f32s,
+    length: S::f32s,
+    pixels: &mut Pixels<S>,
+) {
+    if ramp.is_empty() || !length.simd_gt(0.0).any_true() {
+        return;
+    }
+    let (low, high) = (ramp.ends[0] - base, ramp.ends[1] - base);
+    let front = front.max(low).min(high) - low;
+    let back = back.max(low).min(high) - low;
+    add_segment(simd, ramp, model, front, back, length, pixels);
+}

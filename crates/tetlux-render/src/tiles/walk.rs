@@ -1,0 +1,333 @@
+//! A tile: its cells are walked front to back, its pixels held in vectors.
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+use tetlux_optics::transfer_f32::Weights;
+
+use super::bins::TILE;
+use super::block::{Segments, WIDTH, places, segments};
+use super::ramp::{Pixels, Ramp, add_cut_segment, add_segment};
+use super::record::Record;
+
+/// Pixels of a tile.
+pub(crate) const PIXELS: usize = (TILE * TILE) as usize;
+
+/// Blocks across a tile.
+const COLUMNS: u32 = TILE / WIDTH as u32;
+
+/// The first block of every row of blocks.
+const FIRST_COLUMN: u64 = 0x1111_1111_1111_1111;
+
+/// Column in pixels, and row in blocks, of as many blocks as there are lanes.
+const BLOCK_COLUMNS: [f32; 16] = [0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0];
+const BLOCK_ROWS: [f32; 16] = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 3.0];
+
+/// Records that are loaded at once.
+const AHEAD: usize = 32;
+
+/// So few blocks are sooner tried than sorted out.
+const FEW: u32 = 2;
+
+/// What all tiles of a picture have in common.
+pub(crate) struct Light<'a> {
+    pub(crate) ramps: &'a [Ramp],
+    pub(crate) model: Weights,
+    /// Side of a pixel at unit depth, and the picture's middle; of use in perspective only.
+    pub(crate) pixel: f32,
+    pub(crate) middle: [f32; 2],
+    /// A pixel of this alpha is done.
+    pub(crate) opaque: f32,
+}
+
+/// A tile being drawn.
+pub(crate) struct Walk<'a, S: Simd> {
+    simd: S,
+    light: &'a Light<'a>,
+    /// The tile's first pixel.
+    origin: [u32; 2],
+    /// Premultiplied colour and alpha of the pixels, block by block.
+    tile: [[f32; PIXELS]; 4],
+    /// Blocks with pixels that are not opaque.
+    alive: u64,
+    /// Length of the rays for a depth of 1.
+    stretch: [f32; PIXELS],
+}
+
+/// Where in a tile's vectors of so many lanes the pixel at (x, y) is.
+#[inline(always)]
+fn place(x: usize, y: usize, lanes: usize) -> usize {
+    let rows = lanes / WIDTH;
+    (y / rows * COLUMNS as usize + x / WIDTH) * lanes + y % rows * WIDTH + x % WIDTH
+}
+
+impl<'a, S: Simd> Walk<'a, S> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, light: &'a Light<'a>, origin: [u32; 2], rows: &[&mut [[f32; 4]]]) -> Self {
+        let lanes = S::f32s::LEN;
+        let blocks = PIXELS / lanes;
+        let alive = u64::MAX >> (64 - blocks);
+        let mut walk = Walk { simd, light, origin, tile: [[0.0; PIXELS]; 4], alive, stretch: [1.0; PIXELS] };
+        for (y, row) in rows.iter().enumerate() {
+            for (x, pixel) in row.iter().enumerate() {
+                for i in 0..4 {
+                    walk.tile[i][place(x, y, lanes)] = pixel[i];
+                }
+            }
+        }
+        let [x, y] = [0, 1].map(|axis| origin[axis] as f32 + 0.5 - light.middle[axis]);
+        for block in 0..blocks {
+            let (x, y) = walk.places(block, x, y);
+            let (x, y) = (x * light.pixel, y * light.pixel);
+            let stretch = x.mul_add(x, y.mul_add(y, S::f32s::splat(simd, 1.0))).sqrt();
+            stretch.store_slice(&mut walk.stretch[block * lanes..][..lanes]);
+            let pixels = walk.pixels(block);
+            walk.store(block, &pixels);
+        }
+        walk
+    }
+
+    /// Writes the pixels to the tile's rows of the picture.
+    #[inline(always)]
+    pub(crate) fn finish(&self, rows: &mut [&mut [[f32; 4]]]) {
+        for (y, row) in rows.iter_mut().enumerate() {
+            for (x, pixel) in row.iter_mut().enumerate() {
+                let at = place(x, y, S::f32s::LEN);
+                *pixel = [self.tile[0][at], self.tile[1][at], self.tile[2][at], self.tile[3][at]];
+            }
+        }
+    }
+
+    /// Whether every pixel is opaque.
+    #[inline(always)]
+    pub(crate) fn is_done(&self) -> bool {
+        self.alive == 0
+    }
+
+    /// Places of a block's pixels, that of the tile's first being (x, y).
+    #[inline(always)]
+    fn places(&self, block: usize, x: f32, y: f32) -> (S::f32s, S::f32s) {
+        let rows = S::f32s::LEN / WIDTH;
+        let (column, row) = (block % COLUMNS as usize, block / COLUMNS as usize);
+        places(self.simd, x + (column * WIDTH) as f32, y + (row * rows) as f32)
+    }
+
+    /// The part of an array of a tile's pixels that is a block.
+    #[inline(always)]
+    fn load(&self, values: &[f32; PIXELS], block: usize) -> S::f32s {
+        let lanes = S::f32s::LEN;
+        S::f32s::from_slice(self.simd, &values[block * lanes..][..lanes])
+    }
+
+    #[inline(always)]
+    fn pixels(&self, block: usize) -> Pixels<S> {
+        let [r, g, b, a] = &self.tile;
+        [self.load(r, block), self.load(g, block), self.load(b, block), self.load(a, block)]
+    }
+
+    /// Sets a block's pixels, and leaves it alone from now on if all are opaque.
+    #[inline(always)]
+    fn store(&mut self, block: usize, pixels: &Pixels<S>) {
+        let lanes = S::f32s::LEN;
+        for i in 0..4 {
+            pixels[i].store_slice(&mut self.tile[i][block * lanes..][..lanes]);
+        }
+        if pixels[3].simd_ge(self.light.opaque).all_true() {
+            self.alive &= !(1 << block);
+        }
+    }
+
+    /// The tile's first pixel, counted from a cell's first.
+    #[inline(always)]
+    fn from(&self, record: &Record) -> (f32, f32) {
+        let from = |axis: usize| self.origin[axis] as f32 - record.first[axis] as f32;
+        (from(0), from(1))
+    }
+
+    /// The blocks alive that a cell may cover.
+    #[inline(always)]
+    fn blocks(&self, record: &Record) -> u64 {
+        let rows = (S::f32s::LEN / WIDTH) as u32;
+        let span = |axis: usize, side: u32| {
+            let first = record.first[axis].max(self.origin[axis]) - self.origin[axis];
+            let last = (record.end[axis] - 1 - self.origin[axis]).min(TILE - 1);
+            [first / side, last / side]
+        };
+        let ([left, right], [top, bottom]) = (span(0, WIDTH as u32), span(1, rows));
+        let columns = (1 << (right + 1)) - (1 << left);
+        let below = u64::MAX << (COLUMNS * top);
+        let above = u64::MAX >> (63 - (COLUMNS * bottom + COLUMNS - 1));
+        let boxed = (FIRST_COLUMN & below & above) * columns & self.alive;
+        if boxed.count_ones() <= FEW { boxed } else { self.silhouette(record, boxed) }
+    }
+
+    /// Those of some blocks that meet a cell's silhouette: where every front face is before every back face.
+    #[inline(always)]
+    fn silhouette(&self, record: &Record, boxed: u64) -> u64 {
+        let lanes = S::f32s::LEN;
+        let rows = (lanes / WIDTH) as f32;
+        let (x, y) = self.from(record);
+        let (columns, step) = (&BLOCK_COLUMNS[..lanes], (lanes / COLUMNS as usize) as f32 * rows);
+        let columns = S::f32s::from_slice(self.simd, columns) + x;
+        let mut y = S::f32s::from_slice(self.simd, &BLOCK_ROWS[..lanes]).mul_add(rows, S::f32s::splat(self.simd, y));
+        let fronts = record.fronts as usize;
+        let mut seen = 0;
+        for first in (0..PIXELS / lanes).step_by(lanes) {
+            let mut least = S::f32s::splat(self.simd, f32::MAX);
+            if boxed >> first & (u64::MAX >> (64 - lanes)) != 0 {
+                for f in 0..fronts {
+                    for b in fronts..4 {
+                        let (front, back) = (record.planes[f], record.planes[b]);
+                        let (dx, dy) = (front[0] - back[0], front[1] - back[1]);
+                        // At the block's corner where the difference is largest.
+                        let corner = front[2] - back[2] + (dx * (WIDTH - 1) as f32).max(0.0) + (dy * (rows - 1.0)).max(0.0);
+                        let most = columns.mul_add(dx, y.mul_add(dy, S::f32s::splat(self.simd, corner)));
+                        least = least.min(most);
+                    }
+                }
+                seen |= least.simd_gt(0.0).to_bitmask() << first;
+            }
+            y = y + step;
+        }
+        seen & boxed
+    }
+
+    /// Composites cells behind what is there, one behind the other.
+    #[inline(always)]
+    pub(crate) fn add<const ORTHOGRAPHIC: bool>(&mut self, records: &[Record], run: &[u32]) {
+        for cells in run.chunks(AHEAD) {
+            touch(records, cells);
+            for &i in cells {
+                let record = &records[i as usize];
+                let mut blocks = self.blocks(record);
+                let (x, y) = self.from(record);
+                while blocks != 0 {
+                    let block = blocks.trailing_zeros() as usize;
+                    blocks &= blocks - 1;
+                    let (places, stretch) = (self.places(block, x, y), self.load(&self.stretch, block));
+                    if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch) {
+                        let mut pixels = self.pixels(block);
+                        self.integrate(record, &segments, &mut pixels);
+                        self.store(block, &pixels);
+                    }
+                }
+            }
+            if self.is_done() {
+                return;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn integrate(&self, record: &Record, segments: &Segments<S>, pixels: &mut Pixels<S>) {
+        let Segments { front, back, length, .. } = *segments;
+        let [first, last] = record.pieces.map(|k| k as usize);
+        if first == last {
+            let ramp = &self.light.ramps[first];
+            let shift = record.base - ramp.ends[0];
+            add_segment(self.simd, ramp, self.light.model, front + shift, back + shift, length, pixels);
+        } else {
+            let ramps = &self.light.ramps[first..=last];
+            add_cut_segment(self.simd, ramps, record.base, self.light.model, front, back, length, pixels);
+        }
+    }
+}
+
+/// Loads records before they are needed, so that the processor waits for all at once.
+#[inline(always)]
+fn touch(records: &[Record], cells: &[u32]) {
+    let mut sum = 0.0;
+    for &i in cells {
+        let record = &records[i as usize];
+        // In both of its cache lines.
+        sum += record.planes[0][0] + record.level;
+    }
+    std::hint::black_box(sum);
+}
+
+/// A cell's contribution to a block: the middle's depth, premultiplied colour and alpha.
+#[derive(Clone, Copy)]
+struct Fragment<S: Simd> {
+    depth: S::f32s,
+    color: Pixels<S>,
+}
+
+impl<S: Simd> Walk<'_, S> {
+    /// Composites cells whose order is not known behind what is there: by depth in every pixel.
+    #[inline(always)]
+    pub(crate) fn add_sorted<const ORTHOGRAPHIC: bool>(&mut self, records: &[Record], run: &[u32]) {
+        let mut masks = Vec::with_capacity(run.len());
+        let mut blocks = 0;
+        for &i in run {
+            let mask = self.blocks(&records[i as usize]);
+            blocks |= mask;
+            masks.push(mask);
+        }
+        let mut fragments: Vec<Fragment<S>> = Vec::new();
+        while blocks != 0 {
+            let block = blocks.trailing_zeros() as usize;
+            blocks &= blocks - 1;
+            let stretch = self.load(&self.stretch, block);
+            fragments.clear();
+            let mut before = S::f32s::splat(self.simd, f32::MIN);
+            for (&i, mask) in run.iter().zip(&masks) {
+                if mask >> block & 1 == 0 {
+                    continue;
+                }
+                let record = &records[i as usize];
+                let (x, y) = self.from(record);
+                let places = self.places(block, x, y);
+                if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch) {
+                    let mut color = [S::f32s::splat(self.simd, 0.0); 4];
+                    self.integrate(record, &segments, &mut color);
+                    // Where the ray misses the cell nothing has to move.
+                    before = segments.length.simd_gt(0.0).select(segments.depth, before);
+                    fragments.push(Fragment { depth: before, color });
+                }
+            }
+            sort(&mut fragments);
+            let mut pixels = self.pixels(block);
+            for fragment in &fragments {
+                let left = S::f32s::splat(self.simd, 1.0) - pixels[3];
+                for i in 0..4 {
+                    pixels[i] = left.mul_add(fragment.color[i], pixels[i]);
+                }
+            }
+            self.store(block, &pixels);
+        }
+    }
+}
+
+/// Gaps of a Shell sort (Ciura 2001).
+const GAPS: [usize; 8] = [701, 301, 132, 57, 23, 10, 4, 1];
+
+/// Sorts every lane by depth. Fast where the fragments are nearly sorted, as they are if their cells are.
+#[inline(always)]
+fn sort<S: Simd>(fragments: &mut [Fragment<S>]) {
+    let mut disorder = 0;
+    for i in 1..fragments.len() {
+        disorder += usize::from(fragments[i - 1].depth.simd_gt(fragments[i].depth).any_true());
+    }
+    let gaps = match disorder {
+        0 => return,
+        n if 2 * n < fragments.len() => &GAPS[GAPS.len() - 1..],
+        _ => &GAPS[..],
+    };
+    for &gap in gaps {
+        for end in gap..fragments.len() {
+            let mut i = end;
+            while i >= gap {
+                let (near, far) = (fragments[i - gap], fragments[i]);
+                let swap = near.depth.simd_gt(far.depth);
+                if !swap.any_true() {
+                    break;
+                }
+                fragments[i - gap].depth = swap.select(far.depth, near.depth);
+                fragments[i].depth = swap.select(near.depth, far.depth);
+                for k in 0..4 {
+                    fragments[i - gap].color[k] = swap.select(far.color[k], near.color[k]);
+                    fragments[i].color[k] = swap.select(near.color[k], far.color[k]);
+                }
+                i -= gap;
+            }
+        }
+    }
+}
