@@ -35,9 +35,11 @@ mod error;
 mod gpu;
 #[cfg(test)]
 mod layout_tests;
+mod resources;
 mod stage;
 
 pub use error::RenderError;
+pub use resources::Resources;
 pub use stage::{Stage, Stages};
 
 use tetlux_image::Image;
@@ -57,6 +59,8 @@ pub struct Frame {
     pub image: Image,
     /// What was done, in order.
     pub stages: Vec<Stage>,
+    /// What it took of the device.
+    pub resources: Resources,
 }
 
 /// What a picture is made of.
@@ -114,15 +118,19 @@ impl Renderer {
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let pieces = pieces(&scene.transfer, scene.scalar.range, 1.0 / (scene.unit_distance * device_mesh.scale));
         let weights = match plan.integrator {
-            Integrator::Direct => Weights::Direct,
             Integrator::Average => Weights::Average,
+            // The CPU back end has these two: the plan sees to it.
+            _ => Weights::Direct,
         };
         let job = Job { mesh: &device_mesh, lens, pieces: &pieces, weights, order: &order, size: view.size };
-        let pixels = match plan.backend {
-            Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(&job, &mut stages)?,
-            Backend::Cpu | Backend::Auto => stages.run("draw", || cpu::draw(&job, plan.order == Order::Pixel)),
+        let (pixels, resources) = match plan.backend {
+            Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
+            Backend::Cpu | Backend::Auto => {
+                let pixels = stages.run("draw", || cpu::draw(&job, plan.order == Order::Pixel));
+                (pixels, Resources { cells: order.len(), ..Resources::default() })
+            }
         };
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
-        Ok(Frame { image, stages: stages.into_vec() })
+        Ok(Frame { image, stages: stages.into_vec(), resources })
     }
 }
