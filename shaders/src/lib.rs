@@ -4,25 +4,57 @@
 //! WESL). [`compose`] puts every module that an entry needs before it, each once. Items keep their names, so the
 //! names of all modules are one space.
 //!
+//! Methods are composed: `import package::axes::weights::{weights};` names an axis, and whoever composes says which of
+//! its modules stands there, such as `weights::direct` (in the file `weights/direct.wgsl`). All modules of an axis
+//! declare the same items.
+//!
 //! ```
-//! let source = tetlux_shaders::compose("lib::segment")?;
-//! assert!(source.contains("fn weights_direct"));
+//! use tetlux_shaders::{DEFAULTS, choose, compose};
+//!
+//! let source = compose("stages::draw", &choose(DEFAULTS, &[("weights", "weights::average")]))?;
+//! assert!(source.contains("fn weights(") && source.contains("weights_average"));
 //! # Ok::<(), tetlux_shaders::ComposeError>(())
 //! ```
 
-/// Every module: its name and its text.
-pub const MODULES: &[(&str, &str)] = &[
-    ("lib::cell", include_str!("../lib/cell.wgsl")),
-    ("lib::mesh", include_str!("../lib/mesh.wgsl")),
-    ("lib::published", include_str!("../lib/published.wgsl")),
-    ("lib::segment", include_str!("../lib/segment.wgsl")),
-    ("lib::silhouette", include_str!("../lib/silhouette.wgsl")),
-    ("lib::symmetric", include_str!("../lib/symmetric.wgsl")),
-    ("lib::transfer", include_str!("../lib/transfer.wgsl")),
-    ("lib::view", include_str!("../lib/view.wgsl")),
-    ("stages::draw", include_str!("../stages/draw.wgsl")),
-    ("stages::project", include_str!("../stages/project.wgsl")),
+macro_rules! modules {
+    ($($folder:ident { $($file:ident)+ })+) => {
+        &[$($((
+            concat!(stringify!($folder), "::", stringify!($file)),
+            include_str!(concat!("../", stringify!($folder), "/", stringify!($file), ".wgsl")),
+        )),+),+]
+    };
+}
+
+/// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
+pub const MODULES: &[(&str, &str)] = modules! {
+    lib { cell mesh mesh_buffers published ray segment silhouette span symmetric transfer view }
+    quantity { color scalar }
+    data { cell point }
+    geometry { ray }
+    shading { post_exact vertex }
+    output { dither plain }
+    weights { average direct linear symmetric }
+    stages { draw project }
+};
+
+/// An axis and the module that stands for it.
+pub type Choice = (&'static str, &'static str);
+
+/// The module of every axis that a scene takes unless told otherwise.
+pub const DEFAULTS: &[Choice] = &[
+    ("quantity", "quantity::scalar"),
+    ("data", "data::point"),
+    ("geometry", "geometry::ray"),
+    ("shading", "shading::post_exact"),
+    ("output", "output::plain"),
+    ("weights", "weights::direct"),
 ];
+
+/// `choices` with some of them replaced.
+pub fn choose(choices: &[Choice], others: &[Choice]) -> Vec<Choice> {
+    let other = |axis: &str| others.iter().find(|(name, _)| *name == axis);
+    choices.iter().map(|choice| *other(choice.0).unwrap_or(choice)).collect()
+}
 
 /// Why modules could not be joined.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -33,6 +65,14 @@ pub enum ComposeError {
         /// The name asked for.
         name: String,
         /// The importing module and line; empty for the entry.
+        importer: String,
+    },
+    /// An axis without a choice.
+    #[error("{importer}: no module is chosen for the axis \"{axis}\"")]
+    NoChoice {
+        /// The axis.
+        axis: String,
+        /// The importing module and line.
         importer: String,
     },
     /// An import that is not of the form `import package::module::{item, item};`.
@@ -71,58 +111,78 @@ fn names() -> String {
     MODULES.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
 }
 
-/// The text of a module with all it imports, directly or not, ahead of it.
-pub fn compose(entry: &str) -> Result<String, ComposeError> {
-    compose_from(MODULES, entry)
+/// The text of a module with all it imports, directly or not, ahead of it; `choices` say which modules stand for the
+/// axes. Those that are not asked for do not matter.
+///
+/// # Errors
+///
+/// A module, an item or a choice that there is not; an import that cannot be read; a module that imports itself.
+pub fn compose(entry: &str, choices: &[Choice]) -> Result<String, ComposeError> {
+    compose_from(MODULES, entry, choices)
 }
 
-fn compose_from(modules: &[(&str, &str)], entry: &str) -> Result<String, ComposeError> {
-    let mut output = String::new();
-    append(modules, entry, "", &mut Vec::new(), &mut Vec::new(), &mut output)?;
-    Ok(output)
+fn compose_from(modules: &[(&str, &str)], entry: &str, choices: &[Choice]) -> Result<String, ComposeError> {
+    let mut composer = Composer { modules, choices, path: Vec::new(), done: Vec::new(), output: String::new() };
+    composer.append(entry, "")?;
+    Ok(composer.output)
 }
 
-/// Appends a module after those it imports; `path` holds the modules that are being appended, `done` those that are.
-fn append(
-    modules: &[(&str, &str)],
-    name: &str,
-    importer: &str,
-    path: &mut Vec<String>,
-    done: &mut Vec<String>,
-    output: &mut String,
-) -> Result<(), ComposeError> {
-    let text = find(modules, name, importer)?;
-    if path.iter().any(|p| p == name) {
-        return Err(ComposeError::Cycle { name: name.into(), through: path.join(", ") });
-    }
-    if done.iter().any(|d| d == name) {
-        return Ok(());
-    }
-    path.push(name.into());
-    let mut body = String::new();
-    for (number, line) in text.lines().enumerate() {
-        if !line.starts_with("import ") {
-            body.push_str(line);
-            body.push('\n');
-            continue;
+struct Composer<'a> {
+    modules: &'a [(&'a str, &'a str)],
+    choices: &'a [Choice],
+    /// The modules that are being appended.
+    path: Vec<String>,
+    /// Those that have been.
+    done: Vec<String>,
+    output: String,
+}
+
+impl Composer<'_> {
+    /// Appends a module after those it imports.
+    fn append(&mut self, name: &str, importer: &str) -> Result<(), ComposeError> {
+        let text = find(self.modules, name, importer)?;
+        if self.path.iter().any(|p| p == name) {
+            return Err(ComposeError::Cycle { name: name.into(), through: self.path.join(", ") });
         }
-        let importer = format!("{name}:{}", number + 1);
-        let (module, items) =
-            parse_import(line).ok_or_else(|| ComposeError::Syntax { importer: importer.clone(), text: line.into() })?;
-        let imported = find(modules, &module, &importer)?;
-        for item in items {
-            if !declares(imported, item) {
-                return Err(ComposeError::NoItem { importer, module, item: item.into() });
+        if self.done.iter().any(|d| d == name) {
+            return Ok(());
+        }
+        self.path.push(name.into());
+        let mut body = String::new();
+        for (number, line) in text.lines().enumerate() {
+            if !line.starts_with("import ") {
+                body.push_str(line);
+                body.push('\n');
+                continue;
             }
+            let importer = format!("{name}:{}", number + 1);
+            let (module, items) = parse_import(line)
+                .ok_or_else(|| ComposeError::Syntax { importer: importer.clone(), text: line.into() })?;
+            let module = self.resolve(module, &importer)?;
+            let imported = find(self.modules, &module, &importer)?;
+            for item in items {
+                if !declares(imported, item) {
+                    return Err(ComposeError::NoItem { importer, module, item: item.into() });
+                }
+            }
+            self.append(&module, &importer)?;
+            // An empty line in place of the import keeps the module's line numbers.
+            body.push('\n');
         }
-        append(modules, &module, &importer, path, done, output)?;
-        // An empty line in place of the import keeps the module's line numbers.
-        body.push('\n');
+        self.output.push_str(&format!("// ---- {name}\n{body}"));
+        self.path.pop();
+        self.done.push(name.into());
+        Ok(())
     }
-    output.push_str(&format!("// ---- {name}\n{body}"));
-    path.pop();
-    done.push(name.into());
-    Ok(())
+
+    /// The module that stands for an axis; any other as it is.
+    fn resolve(&self, module: String, importer: &str) -> Result<String, ComposeError> {
+        let Some(axis) = module.strip_prefix("axes::") else { return Ok(module) };
+        let choice = self.choices.iter().find(|(name, _)| *name == axis);
+        choice
+            .map(|(_, module)| (*module).to_string())
+            .ok_or_else(|| ComposeError::NoChoice { axis: axis.into(), importer: importer.into() })
+    }
 }
 
 fn find<'a>(modules: &[(&str, &'a str)], name: &str, importer: &str) -> Result<&'a str, ComposeError> {
@@ -157,16 +217,38 @@ fn declares(text: &str, item: &str) -> bool {
 mod tests {
     use super::*;
 
+    fn validate(name: &str, choices: &[Choice]) {
+        let source = compose(name, choices).unwrap_or_else(|e| panic!("{e}"));
+        let module = naga::front::wgsl::parse_str(&source)
+            .unwrap_or_else(|e| panic!("{name} of {choices:?}: {}", e.emit_to_string(&source)));
+        let capabilities = naga::valid::Capabilities::empty();
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
+            .validate(&module)
+            .unwrap_or_else(|e| panic!("{name} of {choices:?}: {}", e.emit_to_string(&source)));
+    }
+
+    /// What a module of an axis needs of the others.
+    fn with_companions(axis: &'static str, name: &'static str) -> Vec<Choice> {
+        let others: &[Choice] = match name {
+            "shading::vertex" => &[("quantity", "quantity::color")],
+            "quantity::color" => &[("shading", "shading::vertex")],
+            _ => &[],
+        };
+        choose(&choose(DEFAULTS, others), &[(axis, name)])
+    }
+
     #[test]
     fn every_module_composes_and_validates() {
-        for (name, _) in MODULES {
-            let source = compose(name).unwrap_or_else(|e| panic!("{e}"));
-            let module = naga::front::wgsl::parse_str(&source)
-                .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&source)));
-            let capabilities = naga::valid::Capabilities::empty();
-            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
-                .validate(&module)
-                .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&source)));
+        for &(name, _) in MODULES {
+            let (folder, _) = name.split_once("::").unwrap();
+            if ["lib", "stages"].contains(&folder) {
+                validate(name, DEFAULTS);
+            } else {
+                assert!(DEFAULTS.iter().any(|(axis, _)| *axis == folder), "{name} is of no axis");
+                let choices = with_companions(folder, name);
+                validate(name, &choices);
+                validate("stages::draw", &choices);
+            }
         }
     }
 
@@ -177,11 +259,28 @@ mod tests {
             ("b", "import package::a::a;\nfn b() { a(); }"),
             ("c", "import package::b::{b};\nimport package::a::a;\nfn c() { a(); b(); }"),
         ];
-        let source = compose_from(&modules, "c").unwrap();
+        let source = compose_from(&modules, "c", &[]).unwrap();
         let at = |text: &str| source.find(text).unwrap();
         assert_eq!(source.matches("fn a()").count(), 1);
         assert!(at("fn a()") < at("fn b()") && at("fn b()") < at("fn c()"));
         assert!(!source.contains("import"));
+    }
+
+    #[test]
+    fn an_axis_is_what_the_caller_chooses() {
+        let modules = [
+            ("noise::loud", "fn noise() { loud(); }"),
+            ("noise::soft", "fn noise() { soft(); }"),
+            ("noise::none", "fn silence() {}"),
+            ("entry", "import package::axes::noise::{noise};\nfn entry() { noise(); }"),
+        ];
+        let composed = |module| compose_from(&modules, "entry", &[("noise", module)]);
+        assert!(composed("noise::loud").unwrap().contains("loud()"));
+        assert!(!composed("noise::soft").unwrap().contains("loud()"));
+        assert!(matches!(composed("noise::none"), Err(ComposeError::NoItem { .. })));
+        assert!(matches!(composed("noise::odd"), Err(ComposeError::NoModule { .. })));
+        let none = compose_from(&modules, "entry", &[]).unwrap_err();
+        assert_eq!(none, ComposeError::NoChoice { axis: "noise".into(), importer: "entry:1".into() });
     }
 
     #[test]
@@ -194,7 +293,7 @@ mod tests {
             ("loop", "import package::pool::p;\nfn l() {}"),
             ("pool", "import package::loop::l;\nfn p() {}"),
         ];
-        let error = |name| compose_from(&modules, name).unwrap_err();
+        let error = |name| compose_from(&modules, name, &[]).unwrap_err();
         assert!(error("none").to_string().contains("lib::segment"), "the names there are");
         assert_eq!(error("lost"), ComposeError::NoModule { name: "nowhere".into(), importer: "lost:1".into() });
         assert_eq!(

@@ -9,7 +9,7 @@ use tetlux_optics::transfer_f32::Piece;
 
 /// (member, offset) of a structure of a composed module, and its size.
 fn layout(module: &str, structure: &str) -> (Vec<(String, usize)>, usize) {
-    let source = tetlux_shaders::compose(module).unwrap();
+    let source = tetlux_shaders::compose(module, tetlux_shaders::DEFAULTS).unwrap();
     let module = wgsl::parse_str(&source).unwrap();
     let (_, found) = module
         .types

@@ -109,7 +109,8 @@ fn what_is_not_said_has_a_default() {
     assert_eq!((file.size, file.background, file.display_space), ([800, 800], [0.0; 3], false));
     assert_eq!((file.mesh.clone(), file.field.clone(), file.split), (None, None, None));
     assert_eq!(file.unit_distance, UnitDistance::MeanEdge);
-    let method = Method { backend: Backend::Auto, order: Order::Auto, integrator: Integrator::Direct, max_error: 1e-3 };
+    let method = Method { max_error: 1e-3, ..Method::default() };
+    assert_eq!((method.backend, method.order, method.integrator), (Backend::Auto, Order::Auto, Integrator::Auto));
     assert_eq!(file.method, method);
     let mesh = mesh(vec![("only", 1, &|p: DVec3| p.x)]);
     let scene = file.scene(&mesh, 0).unwrap();

@@ -6,7 +6,10 @@ use anyhow::{Result, bail};
 use clap::Args;
 use tetlux_ingest::{TetMesh, read_tet_mesh};
 use tetlux_mesh::procedural;
-use tetlux_scene::{Backend, Integrator, Order, Projection, Scene, SceneFile, UnitDistance};
+use tetlux_scene::{
+    Backend, CellProjection, Classification, Integrator, Interpolation, Order, Projection, Scene, SceneFile, Target,
+    UnitDistance,
+};
 
 use crate::mesh_args::{MeshArgs, split_of};
 use crate::progress;
@@ -42,9 +45,21 @@ pub(crate) struct SceneArgs {
     /// auto, none, centroid or pixel
     #[arg(long, value_name = "NAME")]
     pub(crate) order: Option<Order>,
-    /// direct or average
+    /// How cells become fragments: auto or pt
+    #[arg(long, value_name = "NAME")]
+    pub(crate) projection: Option<CellProjection>,
+    /// How fragments come by their segments: auto or ray
+    #[arg(long, value_name = "NAME")]
+    pub(crate) interpolation: Option<Interpolation>,
+    /// auto, average, linear, direct or symmetric
     #[arg(long, value_name = "NAME")]
     pub(crate) integrator: Option<Integrator>,
+    /// auto, vertex or post-exact
+    #[arg(long, value_name = "NAME")]
+    pub(crate) classification: Option<Classification>,
+    /// auto, rgba8, rgba8-dither, rgba16f or rgba32f
+    #[arg(long, value_name = "NAME")]
+    pub(crate) target: Option<Target>,
     /// Largest error of a pixel that `compare` accepts, linear
     #[arg(long, value_name = "E")]
     pub(crate) max_error: Option<f64>,
@@ -145,7 +160,11 @@ impl SceneArgs {
         let method = &mut file.method;
         method.backend = self.backend.unwrap_or(method.backend);
         method.order = self.order.unwrap_or(method.order);
+        method.projection = self.projection.unwrap_or(method.projection);
+        method.interpolation = self.interpolation.unwrap_or(method.interpolation);
         method.integrator = self.integrator.unwrap_or(method.integrator);
+        method.classification = self.classification.unwrap_or(method.classification);
+        method.target = self.target.unwrap_or(method.target);
         method.max_error = self.max_error.unwrap_or(method.max_error);
         Ok(())
     }

@@ -1,17 +1,19 @@
-//! The wgpu back end: cells projected in a compute stage, drawn back to front, blended in 32-bit floating point.
+//! The wgpu back end: cells projected in a compute stage, drawn back to front, blended by the fixed-function hardware.
 
 pub(crate) mod frame;
+mod picture;
 pub(crate) mod pipelines;
+pub(crate) mod variant;
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use tetlux_optics::transfer_f32::Weights;
-use tetlux_scene::Device;
+use tetlux_scene::{Device, Plan};
 
 use crate::stage::Stages;
-use crate::{Job, RenderError};
-use pipelines::{Pipelines, Variant};
+use crate::{Job, RenderError, Resources};
+use pipelines::Pipelines;
+use variant::Variant;
 
 /// A graphics adapter, and its device and pipelines once they have been used.
 #[derive(Debug)]
@@ -28,7 +30,7 @@ struct Open {
     queue: wgpu::Queue,
 }
 
-/// Blending f32 targets is the one thing asked beyond what every device can do.
+/// What is used where the adapter has it, beyond what every device can do.
 const FEATURES: wgpu::Features = wgpu::Features::FLOAT32_BLENDABLE;
 
 impl Gpu {
@@ -60,7 +62,12 @@ impl Gpu {
     }
 
     /// Draws a picture: premultiplied pixels, top row first.
-    pub(crate) fn draw(&self, job: &Job, stages: &mut Stages) -> Result<Vec<[f32; 4]>, RenderError> {
+    pub(crate) fn draw(
+        &self,
+        plan: &Plan,
+        job: &Job,
+        stages: &mut Stages,
+    ) -> Result<(Vec<[f32; 4]>, Resources), RenderError> {
         let open = match self.open.get() {
             Some(open) => open,
             None => {
@@ -68,11 +75,7 @@ impl Gpu {
                 self.open.get_or_init(|| open)
             }
         };
-        let variant = Variant {
-            orthographic: job.lens.orthographic,
-            cell_data: !job.mesh.cell_scalars.is_empty(),
-            average: job.weights == Weights::Average,
-        };
+        let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty());
         // A panic elsewhere cannot have left the map half changed.
         let known = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).get(&variant).cloned();
         let pipelines = match known {
@@ -86,13 +89,14 @@ impl Gpu {
             }
         };
         self.check_limits(open, job)?;
-        stages.run("draw", || self.checked(open, || frame::draw(open, &pipelines, job)))?.map_err(|e| self.failed(e))
+        let draw = || self.checked(open, || frame::draw(open, &variant, &pipelines, job));
+        stages.run("draw", draw)?.map_err(|e| self.failed(e))
     }
 
     fn open(&self) -> Result<Open, RenderError> {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("tetlux"),
-            required_features: FEATURES,
+            required_features: self.adapter.features() & FEATURES,
             required_limits: self.adapter.limits(),
             ..Default::default()
         };

@@ -10,7 +10,7 @@ use crate::gpu::pipelines::CELL_BYTES;
 
 /// (member, offset) of a structure of the drawing stage, and its size.
 fn layout(structure: &str) -> (Vec<(String, usize)>, usize) {
-    let source = tetlux_shaders::compose("stages::draw").unwrap();
+    let source = tetlux_shaders::compose("stages::draw", tetlux_shaders::DEFAULTS).unwrap();
     let module = naga::front::wgsl::parse_str(&source).unwrap();
     let found = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(structure));
     let TypeInner::Struct { members, span } = &found.unwrap().1.inner else { panic!("{structure} is no structure") };

@@ -36,10 +36,12 @@ mod eye_space;
 mod gpu;
 #[cfg(test)]
 mod layout_tests;
+mod resources;
 mod stage;
 mod tiles;
 
 pub use error::RenderError;
+pub use resources::Resources;
 pub use stage::{Stage, Stages};
 
 use std::ops::Range;
@@ -61,6 +63,8 @@ pub struct Frame {
     pub image: Image,
     /// What was done, in order.
     pub stages: Vec<Stage>,
+    /// What it took of the device.
+    pub resources: Resources,
 }
 
 /// What a picture is made of.
@@ -124,8 +128,9 @@ impl Renderer {
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let pieces = pieces(&scene.transfer, scene.scalar.range, 1.0 / (scene.unit_distance * device_mesh.scale));
         let weights = match plan.integrator {
-            Integrator::Direct => Weights::Direct,
             Integrator::Average => Weights::Average,
+            // The CPU back end has these two: the plan sees to it.
+            _ => Weights::Direct,
         };
         let everything = [0..order.len() as u32];
         let job = Job {
@@ -139,11 +144,14 @@ impl Renderer {
             max_error: scene.method.max_error,
             size: view.size,
         };
-        let pixels = match plan.backend {
-            Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(&job, &mut stages)?,
-            Backend::Cpu | Backend::Auto => tiles::draw(&job, &mut stages),
+        let (pixels, resources) = match plan.backend {
+            Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
+            Backend::Cpu | Backend::Auto => {
+                let pixels = tiles::draw(&job, &mut stages);
+                (pixels, Resources { cells: order.len(), ..Resources::default() })
+            }
         };
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
-        Ok(Frame { image, stages: stages.into_vec() })
+        Ok(Frame { image, stages: stages.into_vec(), resources })
     }
 }

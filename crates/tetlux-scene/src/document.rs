@@ -9,7 +9,10 @@ use tetlux_optics::transfer::{ColorNode, NodeKind, OpacityNode, TransferFunction
 use toml::Spanned;
 
 use crate::file::{CameraSpec, NodeRange, TransferSource, UnitDistance};
-use crate::{Backend, Integrator, Method, Order, Projection, SceneError, SceneFile};
+use crate::{
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneError,
+    SceneFile, Target,
+};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -87,7 +90,15 @@ struct MethodTable {
     #[serde(default)]
     order: Order,
     #[serde(default)]
+    projection: CellProjection,
+    #[serde(default)]
+    interpolation: Interpolation,
+    #[serde(default)]
     integrator: Integrator,
+    #[serde(default)]
+    classification: Classification,
+    #[serde(default)]
+    target: Target,
     max_error: Option<Spanned<f64>>,
 }
 
@@ -127,8 +138,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
         return Err(source.value(spanned, "background", format!("{background:?} must be finite and at least 0")));
     }
     let unit_distance = source.unit_distance(transfer.get_ref())?;
-    let defaults = Method::default();
-    let max_error = source.positive(method.max_error.as_ref(), "max_error")?.unwrap_or(defaults.max_error);
+    let max_error = source.positive(method.max_error.as_ref(), "max_error")?;
     Ok(SceneFile {
         title,
         mesh: mesh.path.map(beside),
@@ -143,7 +153,16 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
         size,
         background,
         display_space: image.display_space,
-        method: Method { backend: method.backend, order: method.order, integrator: method.integrator, max_error },
+        method: Method {
+            backend: method.backend,
+            order: method.order,
+            projection: method.projection,
+            interpolation: method.interpolation,
+            integrator: method.integrator,
+            classification: method.classification,
+            target: method.target,
+            max_error: max_error.unwrap_or(Method::default().max_error),
+        },
         name: path.display().to_string(),
     })
 }

@@ -29,7 +29,9 @@ mod view;
 pub use camera::{Camera, Projection};
 pub use error::SceneError;
 pub use file::{CameraSpec, NodeRange, SceneFile, TransferSource, UnitDistance};
-pub use method::{Backend, Integrator, Method, Order, UnknownName, parse_name};
+pub use method::{
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Target, UnknownName, parse_name,
+};
 pub use plan::{Device, Plan, Skips};
 pub use view::View;
 

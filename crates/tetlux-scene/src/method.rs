@@ -59,13 +59,72 @@ named! {
 }
 
 named! {
-    /// The integral along a ray inside a cell, between two control points of the transfer function.
-    Integrator {
-        /// Linear luminance and extinction, evaluated directly without a table: relative error 1e-5.
+    /// How cells become fragments on a graphics adapter.
+    CellProjection {
+        /// The plan chooses.
         #[default]
-        Direct,
-        /// Mean luminance and extinction: opacity exact, colour off by up to half the opacity.
+        Auto,
+        /// Projected tetrahedra, a compute stage before the draw: Shirley and Tuchman 1990.
+        Pt,
+    }
+}
+
+named! {
+    /// How a fragment comes by the two ends of its segment.
+    Interpolation {
+        /// The plan chooses.
+        #[default]
+        Auto,
+        /// Each fragment finds its own segment from the planes of the cell's faces: exact whatever a rasteriser rounds.
+        Ray,
+    }
+}
+
+named! {
+    /// The integral along a ray inside a cell.
+    Integrator {
+        /// The plan chooses.
+        #[default]
+        Auto,
+        /// Mean luminance and extinction: opacity exact, colour off by up to half the opacity (Shirley and Tuchman 1990).
         Average,
+        /// The linear closed form as published, which is not stable: Williams, Max and Stein 1998.
+        Linear,
+        /// Linear luminance and extinction, evaluated directly without a table: relative error 1e-5.
+        Direct,
+        /// The same without division: relative error 1e-5.
+        Symmetric,
+    }
+}
+
+named! {
+    /// Where scalars become luminance and extinction.
+    Classification {
+        /// The plan chooses.
+        #[default]
+        Auto,
+        /// At the vertices: luminance and extinction are linear in the cell, and what the transfer function does between
+        /// its vertices' scalars is lost.
+        Vertex,
+        /// After interpolation, split exactly at the transfer function's control points.
+        PostExact,
+    }
+}
+
+named! {
+    /// The format in which cells are composited.
+    Target {
+        /// The plan chooses.
+        #[default]
+        Auto,
+        /// 8 bits a channel.
+        Rgba8,
+        /// 8 bits a channel, alpha rounded at random so that its mean is right: Kraus, Qiao and Ebert 2004, section 4.2.
+        Rgba8Dither,
+        /// Half precision: off by up to 5e-2 after a thousand cells.
+        Rgba16f,
+        /// Single precision.
+        Rgba32f,
     }
 }
 
@@ -76,16 +135,98 @@ pub struct Method {
     pub backend: Backend,
     /// The order of compositing.
     pub order: Order,
+    /// How cells become fragments.
+    pub projection: CellProjection,
+    /// How a fragment comes by its segment.
+    pub interpolation: Interpolation,
     /// The integral inside a cell.
     pub integrator: Integrator,
+    /// Where scalars become luminance and extinction.
+    pub classification: Classification,
+    /// The format of the picture while it is composited.
+    pub target: Target,
     /// Largest error of a pixel's colour or alpha, linear, that `compare` accepts.
     pub max_error: f64,
 }
 
 impl Default for Method {
     fn default() -> Self {
-        // A quarter of an 8-bit step.
-        Method { backend: Backend::Auto, order: Order::Auto, integrator: Integrator::Direct, max_error: 1e-3 }
+        Method {
+            backend: Backend::Auto,
+            order: Order::Auto,
+            projection: CellProjection::Auto,
+            interpolation: Interpolation::Auto,
+            integrator: Integrator::Auto,
+            classification: Classification::Auto,
+            target: Target::Auto,
+            // A quarter of an 8-bit step.
+            max_error: 1e-3,
+        }
+    }
+}
+
+impl Method {
+    /// Why this combination cannot be, whatever the scene and the adapter; `None` if it can. `Auto` agrees with
+    /// everything.
+    pub fn refusal(&self) -> Option<String> {
+        if self.backend == Backend::Gpu && self.order == Order::Pixel {
+            return Some(
+                "order \"pixel\" sorts every pixel's segments, which only the CPU back end does: use --backend cpu, \
+                 or --order centroid"
+                    .into(),
+            );
+        }
+        if self.backend == Backend::Cpu
+            && let Some(what) = self.gpu_only()
+        {
+            return Some(format!("{what} is a method of graphics adapters: use --backend gpu"));
+        }
+        if self.order == Order::Pixel
+            && let Some(what) = self.gpu_only()
+        {
+            return Some(format!(
+                "order \"pixel\" is a method of the CPU back end and {what} one of graphics adapters: keep one of them"
+            ));
+        }
+        None
+    }
+
+    /// The first choice that only a graphics adapter's back end can follow, in words.
+    pub(crate) fn gpu_only(&self) -> Option<String> {
+        if !matches!(self.projection, CellProjection::Auto) {
+            return Some(format!("projection \"{}\"", self.projection));
+        }
+        if !matches!(self.interpolation, Interpolation::Auto | Interpolation::Ray) {
+            return Some(format!("interpolation \"{}\"", self.interpolation));
+        }
+        if !matches!(self.integrator, Integrator::Auto | Integrator::Direct | Integrator::Average) {
+            return Some(format!("integrator \"{}\"", self.integrator));
+        }
+        if !matches!(self.classification, Classification::Auto | Classification::PostExact) {
+            return Some(format!("classification \"{}\"", self.classification));
+        }
+        if !matches!(self.target, Target::Auto | Target::Rgba32f) {
+            return Some(format!("target \"{}\"", self.target));
+        }
+        None
+    }
+
+    /// The same with every axis decided that depends on the others alone: all but back end, order and target.
+    pub(crate) fn decided(&self) -> Method {
+        let mut method = *self;
+        if method.projection == CellProjection::Auto {
+            method.projection = CellProjection::Pt;
+        }
+        if method.interpolation == Interpolation::Auto {
+            method.interpolation = Interpolation::Ray;
+        }
+        if method.integrator == Integrator::Auto {
+            method.integrator = Integrator::Direct;
+        }
+        if method.classification == Classification::Auto {
+            method.classification = Classification::PostExact;
+        }
+        method
     }
 }
 

@@ -4,7 +4,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::TetMesh;
 
-use crate::{Backend, Integrator, Order, Scene, SceneError, View};
+use crate::{
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError, Target, View,
+};
 
 /// What a plan needs to know of a graphics adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,8 +39,16 @@ pub struct Plan {
     pub backend: Backend,
     /// Any but `Auto`.
     pub order: Order,
+    /// How cells become fragments. This and the other axes are never `Auto`; they apply to the graphics back end.
+    pub projection: CellProjection,
+    /// How a fragment comes by its segment.
+    pub interpolation: Interpolation,
     /// The integral inside a cell.
     pub integrator: Integrator,
+    /// Where scalars become luminance and extinction.
+    pub classification: Classification,
+    /// The format of the picture while it is composited.
+    pub target: Target,
     /// The camera resolved.
     pub view: View,
     /// The cells to draw, in mesh order.
@@ -60,8 +70,13 @@ impl Plan {
     pub fn new(scene: &Scene, mesh: &TetMesh, device: Option<&Device>) -> Result<Plan, SceneError> {
         let view = scene.camera.view(scene.size)?;
         let mut warnings = Vec::new();
-        let (backend, backend_reason) = choose_backend(scene.method.backend, device)?;
-        let (order, order_reason) = choose_order(scene, backend)?;
+        if let Some(reason) = scene.method.refusal() {
+            return Err(SceneError::Method(reason));
+        }
+        let (backend, backend_reason) = choose_backend(&scene.method, device)?;
+        let (order, order_reason) = choose_order(scene, backend);
+        let (target, target_reason) = choose_target(scene.method.target, device);
+        let decided = Method { backend, order, target, ..scene.method.decided() };
         if order == Order::Centroid {
             warnings.push(
                 "centroid order is not exact: where the transfer function has narrow peaks, pixels may be wrong \
@@ -69,81 +84,163 @@ impl Plan {
                     .into(),
             );
         }
+        if backend == Backend::Gpu && target != Target::Rgba32f {
+            warnings.push(format!("target {target}: {}", error_of(target)));
+        }
         let (cells, skips) = visible_cells(scene, mesh, &view);
         if skips.no_data > 0 {
             warnings.push(format!("{} cells have vertices without a finite value and are left out", skips.no_data));
         }
-        let method = match scene.method.integrator {
-            Integrator::Direct => "linear luminance and extinction, split at the function's control points",
-            Integrator::Average => "mean luminance and extinction between control points: colour is approximate",
-        };
-        let reasons = vec![
-            ("backend", format!("{backend}: {backend_reason}")),
-            ("order", format!("{order}: {order_reason}")),
-            ("integrator", format!("{}: {method}", scene.method.integrator)),
-            (
-                "cells",
-                format!(
-                    "{} of {} drawn; {} transparent, {} outside the view, {} flat, {} without data are skipped",
-                    cells.len(),
-                    mesh.cells().len(),
-                    skips.transparent,
-                    skips.outside,
-                    skips.flat,
-                    skips.no_data
-                ),
+        let mut reasons =
+            vec![("backend", format!("{backend}: {backend_reason}")), ("order", format!("{order}: {order_reason}"))];
+        if backend == Backend::Gpu {
+            reasons.push(("projection", says(decided.projection, of_projection(decided.projection))));
+            reasons.push(("interpolation", says(decided.interpolation, of_interpolation(decided.interpolation))));
+        }
+        reasons.push(("integrator", says(decided.integrator, of_integrator(decided.integrator))));
+        if backend == Backend::Gpu {
+            reasons.push(("classification", says(decided.classification, of_classification(decided.classification))));
+            reasons.push(("target", says(target, &target_reason)));
+        }
+        reasons.push((
+            "cells",
+            format!(
+                "{} of {} drawn; {} transparent, {} outside the view, {} flat, {} without data are skipped",
+                cells.len(),
+                mesh.cells().len(),
+                skips.transparent,
+                skips.outside,
+                skips.flat,
+                skips.no_data
             ),
-        ];
-        Ok(Plan { backend, order, integrator: scene.method.integrator, view, cells, skips, reasons, warnings })
+        ));
+        let Method { projection, interpolation, integrator, classification, .. } = decided;
+        Ok(Plan {
+            backend,
+            order,
+            projection,
+            interpolation,
+            integrator,
+            classification,
+            target,
+            view,
+            cells,
+            skips,
+            reasons,
+            warnings,
+        })
+    }
+}
+
+/// A choice and its reason.
+fn says(choice: impl std::fmt::Display, reason: &str) -> String {
+    format!("{choice}: {reason}")
+}
+
+fn of_projection(projection: CellProjection) -> &'static str {
+    match projection {
+        CellProjection::Auto | CellProjection::Pt => "a compute stage projects each cell once",
+    }
+}
+
+fn of_interpolation(interpolation: Interpolation) -> &'static str {
+    match interpolation {
+        Interpolation::Auto | Interpolation::Ray => "every fragment finds its own segment: exact",
+    }
+}
+
+fn of_integrator(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::Auto | Integrator::Direct => "linear luminance and extinction, relative error 1e-5, no table",
+        Integrator::Average => "mean luminance and extinction: colour is approximate",
+        Integrator::Linear => "linear luminance and extinction as published: not stable",
+        Integrator::Symmetric => "linear luminance and extinction, relative error 1e-5, no division",
+    }
+}
+
+fn of_classification(classification: Classification) -> &'static str {
+    match classification {
+        Classification::Auto | Classification::PostExact => "split at the function's control points",
+        Classification::Vertex => "at the vertices: what lies between their scalars is lost",
+    }
+}
+
+fn error_of(target: Target) -> &'static str {
+    match target {
+        Target::Auto | Target::Rgba32f => "off by 5e-7 after a thousand cells",
+        Target::Rgba8 => "every cell is rounded to 1/255, and thin ones vanish",
+        Target::Rgba8Dither => "every cell is rounded to 1/255 at random, right in the mean",
+        Target::Rgba16f => "off by up to 5e-2 after a thousand cells",
     }
 }
 
 impl std::fmt::Display for Plan {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for (what, why) in &self.reasons {
-            writeln!(f, "  {what:<10} {why}")?;
+            writeln!(f, "  {what:<14} {why}")?;
         }
         Ok(())
     }
 }
 
-fn choose_backend(wanted: Backend, device: Option<&Device>) -> Result<(Backend, String), SceneError> {
-    match (wanted, device) {
-        (Backend::Cpu, _) => Ok((Backend::Cpu, "as asked".into())),
-        (Backend::Gpu, Some(d)) if d.blends_f32 => Ok((Backend::Gpu, format!("as asked, on {}", d.name))),
-        (Backend::Gpu, Some(d)) => Err(SceneError::Method(format!(
-            "{} cannot blend 32-bit floating-point targets, without which the picture's error is not bounded: \
-             use --backend cpu",
+fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, String), SceneError> {
+    // Formats that every device blends.
+    let blends = |d: &Device| d.blends_f32 || method.target != Target::Rgba32f;
+    let cannot_blend = |d: &Device| {
+        SceneError::Method(format!(
+            "{} cannot blend 32-bit floating-point targets: use --backend cpu, or --target rgba16f, which is off by up \
+             to 5e-2",
             d.name
-        ))),
+        ))
+    };
+    let gpu_only = method.gpu_only();
+    match (method.backend, device) {
+        (Backend::Cpu, _) => Ok((Backend::Cpu, "as asked".into())),
+        (Backend::Auto, _) if method.order == Order::Pixel => Ok((Backend::Cpu, "order pixel needs it".into())),
+        (Backend::Gpu, Some(d)) if blends(d) => Ok((Backend::Gpu, format!("as asked, on {}", d.name))),
+        (Backend::Gpu, Some(d)) => Err(cannot_blend(d)),
         (Backend::Gpu, None) => {
             Err(SceneError::Method("there is no graphics adapter: use --backend cpu, or install a driver".into()))
         }
-        (Backend::Auto, None) => Ok((Backend::Cpu, "there is no graphics adapter".into())),
-        (Backend::Auto, Some(d)) if d.software => {
-            Ok((Backend::Cpu, format!("{} is this processor too, and the direct way is exact and faster", d.name)))
-        }
-        (Backend::Auto, Some(d)) if !d.blends_f32 => {
-            Ok((Backend::Cpu, format!("{} cannot blend 32-bit floating-point targets", d.name)))
-        }
-        (Backend::Auto, Some(d)) => Ok((Backend::Gpu, d.name.clone())),
+        (Backend::Auto, None) => match gpu_only {
+            Some(what) => Err(SceneError::Method(format!("{what} needs a graphics adapter, and there is none"))),
+            None => Ok((Backend::Cpu, "there is no graphics adapter".into())),
+        },
+        (Backend::Auto, Some(d)) => match gpu_only {
+            Some(_) if !blends(d) => Err(cannot_blend(d)),
+            Some(what) => Ok((Backend::Gpu, format!("{what} needs it; on {}", d.name))),
+            None if d.software => {
+                Ok((Backend::Cpu, format!("{} is this processor too, and the direct way is exact and faster", d.name)))
+            }
+            None if !d.blends_f32 => {
+                Ok((Backend::Cpu, format!("{} cannot blend 32-bit floating-point targets", d.name)))
+            }
+            None => Ok((Backend::Gpu, d.name.clone())),
+        },
     }
 }
 
-fn choose_order(scene: &Scene, backend: Backend) -> Result<(Order, String), SceneError> {
+/// The best that the adapter can blend, unless one is asked for.
+fn choose_target(asked: Target, device: Option<&Device>) -> (Target, String) {
+    let target = match asked {
+        Target::Auto if device.is_some_and(|d| !d.blends_f32) => Target::Rgba16f,
+        Target::Auto => Target::Rgba32f,
+        asked => asked,
+    };
+    let why =
+        if target == Target::Rgba16f && asked == Target::Auto { "the adapter blends no 32-bit floats; " } else { "" };
+    (target, format!("{why}{}", error_of(target)))
+}
+
+fn choose_order(scene: &Scene, backend: Backend) -> (Order, String) {
     let one_luminance = scene.transfer.single_luminance().is_some();
     match (scene.method.order, backend) {
-        (Order::Pixel, Backend::Gpu) => Err(SceneError::Method(
-            "order \"pixel\" sorts every pixel's segments, which only the CPU back end does: use --backend cpu, \
-             or --order centroid"
-                .into(),
-        )),
         (Order::Auto, _) if one_luminance => {
-            Ok((Order::None, "there is one luminance throughout, so the order does not matter".into()))
+            (Order::None, "there is one luminance throughout, so the order does not matter".into())
         }
-        (Order::Auto, Backend::Cpu) => Ok((Order::Pixel, "exact where cells do not overlap".into())),
-        (Order::Auto, _) => Ok((Order::Centroid, "the only one this back end has".into())),
-        (asked, _) => Ok((asked, "as asked".into())),
+        (Order::Auto, Backend::Cpu) => (Order::Pixel, "exact where cells do not overlap".into()),
+        (Order::Auto, _) => (Order::Centroid, "the only one this back end has".into()),
+        (asked, _) => (asked, "as asked".into()),
     }
 }
 
@@ -296,7 +393,8 @@ mod tests {
             (Backend::Auto, Order::Auto, Some(&software), Some((Backend::Cpu, Order::Pixel))),
             (Backend::Auto, Order::Auto, Some(&half), Some((Backend::Cpu, Order::Pixel))),
             (Backend::Gpu, Order::Auto, Some(&software), Some((Backend::Gpu, Order::Centroid))),
-            (Backend::Gpu, Order::Auto, Some(&half), None),
+            (Backend::Gpu, Order::Auto, Some(&half), Some((Backend::Gpu, Order::Centroid))),
+            (Backend::Auto, Order::Pixel, Some(&hardware), Some((Backend::Cpu, Order::Pixel))),
             (Backend::Gpu, Order::Auto, None, None),
             (Backend::Gpu, Order::Pixel, Some(&hardware), None),
             (Backend::Cpu, Order::Centroid, Some(&hardware), Some((Backend::Cpu, Order::Centroid))),
@@ -305,6 +403,35 @@ mod tests {
             let plan = Plan::new(&scene(&mesh, &colors, method), &mesh, device);
             assert_eq!(plan.ok().map(|p| (p.backend, p.order)), expected, "{backend} {order} {device:?}");
         }
+    }
+
+    #[test]
+    fn a_method_of_graphics_adapters_takes_one() {
+        let mesh = row(4);
+        let colors = [[0.1, 0.2, 0.3], [0.3, 0.2, 0.1], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let method = Method { integrator: Integrator::Symmetric, ..Method::default() };
+        let planned = |method, device| Plan::new(&scene(&mesh, &colors, method), &mesh, device);
+        let software = device(true, true);
+        assert_eq!(planned(method, Some(&software)).unwrap().backend, Backend::Gpu);
+        let error = planned(method, None).unwrap_err().to_string();
+        assert!(error.contains("symmetric") && error.contains("no"), "{error}");
+        let on_cpu = Method { backend: Backend::Cpu, ..method };
+        let error = planned(on_cpu, Some(&software)).unwrap_err().to_string();
+        assert!(error.contains("symmetric") && error.contains("--backend gpu"), "{error}");
+        let sorted = Method { order: Order::Pixel, ..method };
+        assert!(planned(sorted, Some(&software)).is_err());
+    }
+
+    #[test]
+    fn an_adapter_that_cannot_blend_singles_gets_halves_and_a_warning() {
+        let mesh = row(4);
+        let on_gpu = Method { backend: Backend::Gpu, ..Method::default() };
+        let planned = |method| Plan::new(&scene(&mesh, &[GREY], method), &mesh, Some(&device(false, false)));
+        let plan = planned(on_gpu).unwrap();
+        assert_eq!(plan.target, Target::Rgba16f);
+        assert!(plan.warnings.iter().any(|w| w.contains("rgba16f") && w.contains("5e-2")), "{:?}", plan.warnings);
+        let error = planned(Method { target: Target::Rgba32f, ..on_gpu }).unwrap_err().to_string();
+        assert!(error.contains("cannot blend") && error.contains("rgba16f"), "{error}");
     }
 
     #[test]

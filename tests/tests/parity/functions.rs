@@ -4,7 +4,7 @@ use tetlux_optics::published_f32::linear_published;
 use tetlux_optics::segment_f32::{mean_depth, opacity, weights_average, weights_direct};
 use tetlux_optics::symmetric_f32::weights_symmetric;
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
-use tetlux_shaders::compose;
+use tetlux_shaders::{DEFAULTS, compose};
 use tetlux_tests::{Random, transfer};
 
 use crate::device::run;
@@ -97,7 +97,7 @@ fn segment_weights() {
     for pair in inputs[..ROWS / 2].chunks_exact_mut(2) {
         pair[1] = pair[0] * (1.0 + random.between(-1e-6, 1e-6) as f32);
     }
-    let outputs = run(&(compose("lib::segment").unwrap() + SEGMENT_TEST), &[], &inputs, ROWS, 8);
+    let outputs = run(&(compose("lib::segment", DEFAULTS).unwrap() + SEGMENT_TEST), &[], &inputs, ROWS, 8);
     let names = ["alpha", "w_b", "w_f", "average alpha", "average w_b", "average w_f", "opacity", "mean depth"];
     let mut worst = [0.0f32; 8];
     for (pair, found) in inputs.chunks_exact(2).zip(outputs.chunks_exact(8)) {
@@ -138,7 +138,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 fn symmetric_weights() {
     let mut random = Random::new(13);
     let inputs: Vec<f32> = (0..2 * ROWS).map(|_| any_number(&mut random)).collect();
-    let source = compose("lib::symmetric").unwrap() + &THREE_TEST.replace("FUNCTION", "weights_symmetric");
+    let source = compose("lib::symmetric", DEFAULTS).unwrap() + &THREE_TEST.replace("FUNCTION", "weights_symmetric");
     let outputs = run(&source, &[], &inputs, ROWS, 3);
     for (pair, found) in inputs.chunks_exact(2).zip(outputs.chunks_exact(3)) {
         let twin = weights_symmetric(pair[0], pair[1]);
@@ -162,7 +162,7 @@ fn published_weights_are_finite_and_alike_where_they_are_stable() {
         pair[1] = pair[0] * random.between(0.0, 0.1) as f32;
     }
     let rows = inputs.len() / 2;
-    let source = compose("lib::published").unwrap() + &THREE_TEST.replace("FUNCTION", "linear_published");
+    let source = compose("lib::published", DEFAULTS).unwrap() + &THREE_TEST.replace("FUNCTION", "linear_published");
     let outputs = run(&source, &[], &inputs, rows, 3);
     for (i, (pair, found)) in inputs.chunks_exact(2).zip(outputs.chunks_exact(3)).enumerate() {
         let twin = linear_published(pair[0], pair[1]);
@@ -218,7 +218,7 @@ fn random_pieces(random: &mut Random) -> Vec<Piece> {
 
 #[test]
 fn whole_segments() {
-    let source = compose("lib::transfer").unwrap() + INTEGRATE_TEST;
+    let source = compose("shading::post_exact", DEFAULTS).unwrap() + INTEGRATE_TEST;
     let mut random = Random::new(12);
     let (rows, mut worst) = (10_000, 0.0f32);
     for _ in 0..20 {
@@ -271,7 +271,7 @@ fn a_planted_difference_is_seen() {
     }
     assert!(agree(0.0, 1e-39) && !agree(0.0, 1e-30), "flushed to zero only where denormal");
     // A shader with a wrong digit in a coefficient is caught by the same inputs.
-    let source = compose("lib::segment").unwrap().replace("0.37945005", "0.37955005") + SEGMENT_TEST;
+    let source = compose("lib::segment", DEFAULTS).unwrap().replace("0.37945005", "0.37955005") + SEGMENT_TEST;
     let outputs = run(&source, &[], &[1.5, 1.5], 1, 8);
     let twin = weights_direct(1.5, 1.5);
     assert!(agree(outputs[0], twin[0]) && !agree(outputs[1], twin[1]) && !agree(outputs[2], twin[2]));

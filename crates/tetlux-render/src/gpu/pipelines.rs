@@ -2,111 +2,105 @@
 
 use wgpu::{BindingType, BufferBindingType, ShaderStages};
 
+use super::variant::{Binding, Variant};
 use crate::RenderError;
-
-/// The format of the picture on the device.
-pub(super) const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 /// Bytes of a projected cell: `Cell` of shaders/lib/cell.wgsl.
 pub(crate) const CELL_BYTES: u64 = 80;
 
-/// The values of the shaders' overrides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct Variant {
-    pub(super) orthographic: bool,
-    pub(super) cell_data: bool,
-    pub(super) average: bool,
-}
-
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    /// View, transfer function, mesh and order.
+    /// What [`Variant::bindings`] names.
     pub(super) scene: wgpu::BindGroupLayout,
-    /// A batch and its projected cells, as they are written.
-    pub(super) project_batch: wgpu::BindGroupLayout,
-    /// The same, as they are read.
-    pub(super) draw_batch: wgpu::BindGroupLayout,
-    pub(super) project: wgpu::ComputePipeline,
-    pub(super) draw: wgpu::RenderPipeline,
+    pub(super) draw: Stage<wgpu::RenderPipeline>,
+    /// The stage before it, if there is one.
+    pub(super) compute: Option<Stage<wgpu::ComputePipeline>>,
+}
+
+/// A pipeline and the layout of its batch: the batch itself and its projected cells, written or read.
+#[derive(Debug)]
+pub(super) struct Stage<P> {
+    pub(super) pipeline: P,
+    pub(super) batch: wgpu::BindGroupLayout,
 }
 
 impl Pipelines {
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        1 + usize::from(self.compute.is_some())
+    }
+
     pub(super) fn new(device: &wgpu::Device, variant: Variant) -> Result<Pipelines, RenderError> {
+        let choices = variant.choices();
         let shader = |name: &str| -> Result<wgpu::ShaderModule, RenderError> {
-            let source = wgpu::ShaderSource::Wgsl(tetlux_shaders::compose(name)?.into());
+            let source = wgpu::ShaderSource::Wgsl(tetlux_shaders::compose(name, &choices)?.into());
             Ok(device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source }))
         };
-        let storage = BindingType::Buffer {
-            ty: BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let writable = BindingType::Buffer {
-            ty: BufferBindingType::Storage { read_only: false },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let uniform =
-            BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
-        let layout = |label, entries: &[(ShaderStages, BindingType)]| {
-            let entries: Vec<_> = (0u32..)
-                .zip(entries)
-                .map(|(binding, &(visibility, ty))| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None })
+        let buffer = |ty| BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        let uniform = buffer(BufferBindingType::Uniform);
+        let storage = buffer(BufferBindingType::Storage { read_only: true });
+        let writable = buffer(BufferBindingType::Storage { read_only: false });
+        let layout = |label, entries: &[(u32, ShaderStages, BindingType)]| {
+            let entries: Vec<_> = entries
+                .iter()
+                .map(|&(binding, visibility, ty)| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None })
                 .collect();
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };
-        let geometry = ShaderStages::COMPUTE | ShaderStages::VERTEX;
-        let scene = layout(
-            "scene",
-            &[
-                (geometry | ShaderStages::FRAGMENT, uniform),
-                (ShaderStages::VERTEX_FRAGMENT, storage),
-                (geometry, storage),
-                (geometry, storage),
-                (geometry, storage),
-                (geometry, storage),
-            ],
-        );
-        let project_batch = layout("project", &[(ShaderStages::COMPUTE, uniform), (ShaderStages::COMPUTE, writable)]);
-        let draw_batch = layout("draw", &[(ShaderStages::VERTEX, uniform), (ShaderStages::VERTEX, storage)]);
-        let pipeline_layout = |batch| {
+        let any = ShaderStages::COMPUTE | ShaderStages::VERTEX_FRAGMENT;
+        let scene: Vec<_> = variant
+            .bindings()
+            .into_iter()
+            .map(|binding| (binding as u32, any, if binding == Binding::View { uniform } else { storage }))
+            .collect();
+        let scene = layout("scene", &scene);
+        let pipeline_layout = |batch: &wgpu::BindGroupLayout| {
             device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,
                 bind_group_layouts: &[Some(&scene), Some(batch)],
                 immediate_size: 0,
             })
         };
+        let constants = [("ORTHOGRAPHIC", f64::from(u8::from(variant.orthographic)))];
+        let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
 
-        let geometry = [
-            ("ORTHOGRAPHIC", f64::from(u8::from(variant.orthographic))),
-            ("CELL_DATA", f64::from(u8::from(variant.cell_data))),
-        ];
-        let fragment = [geometry[0], ("INTEGRATOR", f64::from(u8::from(variant.average)))];
-        let options = |constants| wgpu::PipelineCompilationOptions { constants, ..Default::default() };
-        let project = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("project"),
-            layout: Some(&pipeline_layout(&project_batch)),
-            module: &shader("stages::project")?,
-            entry_point: Some("project"),
-            compilation_options: options(&geometry),
-            cache: None,
-        });
+        let geometry = variant.geometry();
+        let compute = match geometry.compute {
+            None => None,
+            Some(name) => {
+                let stage = ShaderStages::COMPUTE;
+                let batch = layout("batch, written", &[(0, stage, uniform), (1, stage, writable)]);
+                let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some(name),
+                    layout: Some(&pipeline_layout(&batch)),
+                    module: &shader(name)?,
+                    entry_point: None,
+                    compilation_options: options(),
+                    cache: None,
+                });
+                Some(Stage { pipeline, batch })
+            }
+        };
+        let stages = ShaderStages::VERTEX_FRAGMENT;
+        let projected = compute.is_some().then_some((1, stages, storage));
+        let batch: Vec<_> = [(0, stages, uniform)].into_iter().chain(projected).collect();
+        let batch = layout("batch, read", &batch);
         let module = shader("stages::draw")?;
-        let draw = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("draw"),
-            layout: Some(&pipeline_layout(&draw_batch)),
+            layout: Some(&pipeline_layout(&batch)),
             vertex: wgpu::VertexState {
                 module: &module,
                 entry_point: Some("cover"),
-                compilation_options: options(&geometry),
+                compilation_options: options(),
                 buffers: &[],
             },
             fragment: Some(wgpu::FragmentState {
                 module: &module,
-                entry_point: Some("shade"),
-                compilation_options: options(&fragment),
+                entry_point: Some("color"),
+                compilation_options: options(),
                 targets: &[Some(wgpu::ColorTargetState {
-                    format: TARGET,
+                    format: variant.format(),
                     blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                     write_mask: wgpu::ColorWrites::ALL,
                 })],
@@ -117,6 +111,6 @@ impl Pipelines {
             multiview_mask: None,
             cache: None,
         });
-        Ok(Pipelines { scene, project_batch, draw_batch, project, draw })
+        Ok(Pipelines { scene, draw: Stage { pipeline, batch }, compute })
     }
 }

@@ -1,0 +1,7 @@
+// Scalars belong to points.
+import package::lib::mesh_buffers::{points};
+
+// The scalars of a cell at its vertices.
+fn scalars_of(cell: u32, names: vec4<u32>) -> vec4<f32> {
+    return vec4<f32>(points[names.x].w, points[names.y].w, points[names.z].w, points[names.w].w);
+}

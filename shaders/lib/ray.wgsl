@@ -1,0 +1,41 @@
+// A ray's segment from the planes of the cell's faces: exact whatever a rasteriser rounds.
+import package::lib::view::{view, ORTHOGRAPHIC};
+import package::lib::cell::{Reference};
+import package::lib::span::{Segment};
+import package::axes::quantity::{Quantity, Linear, linear_at};
+
+// The segment of the ray through `at`, in pixels from the picture's middle.
+fn cell_segment(planes: array<vec4<f32>, 4>, linear: Linear, reference: Reference, at: vec2<f32>) -> Segment {
+    let from_0 = at - reference.origins.xy;
+    let from_1 = at - reference.origins.zw;
+    var front = reference.w.y;
+    var back = reference.w.x;
+    for (var i = 0u; i < 4u; i++) {
+        let plane = planes[i];
+        let from_origin = select(from_0, from_1, i == 0u);
+        let w = dot(plane.xy, from_origin) + plane.z;
+        if plane.w > 0.0 {
+            front = min(front, w);
+        } else {
+            back = max(back, w);
+        }
+    }
+    var segment: Segment;
+    if !(front > back) {
+        return segment;
+    }
+    let across = from_0 * view.pixel;
+    if ORTHOGRAPHIC {
+        let direction = vec3<f32>(0.0, 0.0, 1.0);
+        segment.length = front - back;
+        segment.front = linear_at(linear, 1.0, across, direction, front);
+        segment.back = linear_at(linear, 1.0, across, direction, back);
+    } else {
+        let direction = vec3<f32>(at * view.pixel, 1.0);
+        let depth = reference.depth;
+        segment.length = length(direction) * depth * (front - back) / ((1.0 + front) * (1.0 + back));
+        segment.front = linear_at(linear, depth, across, direction, front / (1.0 + front));
+        segment.back = linear_at(linear, depth, across, direction, back / (1.0 + back));
+    }
+    return segment;
+}

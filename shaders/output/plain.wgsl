@@ -1,0 +1,5 @@
+// What is composited, as it is.
+
+fn stored(color: vec4<f32>, at: vec2<f32>, entry: u32) -> vec4<f32> {
+    return color;
+}

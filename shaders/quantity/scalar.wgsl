@@ -1,0 +1,29 @@
+// What is linear in a cell: the scalar. It is classified after it has been interpolated.
+import package::lib::view::{Vertex};
+import package::lib::cell::{Cell, Reference};
+
+alias Quantity = f32;
+
+// The gradient and, in w, the value at the reference vertex; the least and the greatest value. The rest is unused.
+alias Linear = array<vec4<f32>, 4>;
+
+fn quantity_of(scalar: f32) -> Quantity {
+    return scalar;
+}
+
+fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>) -> Linear {
+    return Linear(
+        vec4<f32>(cell.gradient.xyz, reference.scalar),
+        vec4<f32>(reference.s, 0.0, 0.0),
+        vec4<f32>(0.0),
+        vec4<f32>(0.0),
+    );
+}
+
+// The value where the ray of that direction lies `scaled` depths before the reference vertex, which it passes at a
+// distance of `across` depths.
+fn linear_at(linear: Linear, depth: f32, across: vec2<f32>, direction: vec3<f32>, scaled: f32) -> Quantity {
+    let gradient = linear[0].xyz;
+    let value = linear[0].w + depth * (dot(gradient.xy, across) - scaled * dot(gradient, direction));
+    return clamp(value, linear[1].x, linear[1].y);
+}
