@@ -18,6 +18,9 @@ use std::f64::consts::PI;
 #[cfg(test)]
 mod tests;
 
+/// Where a Gaussian falls below this share of its peak (beyond 7.4 sigma) nothing of it is taken to be visible.
+pub const GAUSSIAN_TAIL: f64 = 1e-12;
+
 /// A rectangle of the (s, g) plane, ends included. Ends may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
@@ -218,6 +221,25 @@ impl Widget {
         self.max_opacity * share
     }
 
+    /// Whether anything of the widget may be seen where s and g stay in a rectangle, for culling: no means that the
+    /// opacity is 0 there or, of a Gaussian, below [`GAUSSIAN_TAIL`] of its peak. Neither exponential nor sine.
+    pub fn is_visible_over(&self, range: &Rectangle) -> bool {
+        if self.max_opacity == 0.0 || self.support.is_some_and(|rectangle| !rectangle.meets(range)) {
+            return false;
+        }
+        match self.shape {
+            Shape::Uniform => true,
+            Shape::Gaussian { center, sigma } => {
+                let nearest = [center[0].max(range.s[0]).min(range.s[1]), center[1].max(range.g[0]).min(range.g[1])];
+                let [x, y] = [0, 1].map(|axis| (nearest[axis] - center[axis]) / sigma[axis]);
+                // -2 ln GAUSSIAN_TAIL; NaN, of a cell without data, is no reason to skip.
+                !(x * x + y * y > 55.262_042_231_857_1)
+            }
+            // Dark on lines only.
+            Shape::Wave { .. } => true,
+        }
+    }
+
     /// The largest opacity over a rectangle, for culling; exact but for a rectangle that a support cuts, where it is a
     /// bound.
     pub fn max_opacity_over(&self, range: &Rectangle) -> f64 {
@@ -279,6 +301,11 @@ impl BivariateFunction {
     /// A bound of the opacity over a rectangle, for culling; 0 only where there is nothing.
     pub fn max_opacity_over(&self, range: &Rectangle) -> f64 {
         self.widgets.iter().map(|widget| widget.max_opacity_over(range)).sum()
+    }
+
+    /// Whether any widget may be seen over a rectangle: see [`Widget::is_visible_over`].
+    pub fn is_visible_over(&self, range: &Rectangle) -> bool {
+        self.widgets.iter().any(|widget| widget.is_visible_over(range))
     }
 
     /// The colour that all visible widgets share: then the order of segments along a ray does not matter. Black if
