@@ -108,11 +108,11 @@ impl ImageFunction {
     pub fn max_opacity_over(&self, range: &Rectangle) -> f64 {
         let [[left, right], [bottom, top]] = [(0, range.s), (1, range.g)].map(|(axis, [low, high])| {
             let last = self.size()[axis] - 1;
-            // A NaN end means the whole axis, so that culling by this bound stays safe.
-            if !(low <= high) {
-                return [0, last];
+            if low <= high {
+                return [self.place(axis, low).floor() as usize, (self.place(axis, high).ceil() as usize).min(last)];
             }
-            [self.place(axis, low).floor() as usize, (self.place(axis, high).ceil() as usize).min(last)]
+            // A NaN end means the whole axis, so that culling by this bound stays safe.
+            [0, last]
         });
         let rows = (bottom..=top).map(|row| &self.texels[row * self.width..][left..=right]);
         rows.flatten().map(|texel| f64::from(texel[3])).fold(0.0, f64::max)

@@ -23,6 +23,7 @@
 //! | [`symmetric_f32`] | the same weights without division, in f32, as a shader has them |
 //! | [`published_f32`] | the published form in f32, as a shader has it |
 //! | [`transfer_f32`] | whole segments in the shader's arithmetic |
+//! | [`light`], [`light_f32`] | shading by the gradient, silhouettes |
 //! | [`accuracy`] | inputs and measure of the stated f32 errors |
 //! | [`color_space`] | the colour spaces in which presets are interpolated |
 //!
@@ -46,6 +47,8 @@ pub mod classification;
 pub mod color_space;
 pub mod emission;
 pub mod image_function;
+pub mod light;
+pub mod light_f32;
 pub mod preset;
 pub mod published;
 pub mod published_f32;
@@ -64,6 +67,7 @@ pub mod widget_integral;
 pub use classification::Classification;
 pub use emission::EmissionConvention;
 pub use image_function::{ImageFunction, ImageFunctionError};
+pub use light::{Light, LightError};
 pub use preset::{Preset, PresetError, read_preset};
 pub use transfer::{ColorNode, OpacityNode, Piece, TransferFunction, TransferFunctionError};
 pub use widget::{BivariateFunction, Widget, WidgetError};

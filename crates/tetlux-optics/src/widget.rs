@@ -193,6 +193,27 @@ impl Widget {
         self.color
     }
 
+    /// The widget in other units of s and g: what was at p comes to `origin` + p `scale`, both finite, `scale` above 0.
+    pub fn mapped(&self, origin: [f64; 2], scale: [f64; 2]) -> Self {
+        let place = |p: [f64; 2]| [0, 1].map(|axis| origin[axis] + p[axis] * scale[axis]);
+        let shape = match self.shape {
+            Shape::Uniform => Shape::Uniform,
+            Shape::Gaussian { center, sigma } => {
+                Shape::Gaussian { center: place(center), sigma: [0, 1].map(|axis| sigma[axis] * scale[axis]) }
+            }
+            Shape::Wave { profile, frequency, offset } => {
+                let frequency = [0, 1].map(|axis| frequency[axis] / scale[axis]);
+                let offset = offset - frequency[0] * origin[0] - frequency[1] * origin[1];
+                Shape::Wave { profile, frequency, offset }
+            }
+        };
+        let support = self.support.map(|rectangle| {
+            let [low, high] = [[rectangle.s[0], rectangle.g[0]], [rectangle.s[1], rectangle.g[1]]].map(place);
+            Rectangle { s: [low[0], high[0]], g: [low[1], high[1]] }
+        });
+        Self { shape, support, ..*self }
+    }
+
     /// The same without a support.
     pub(crate) fn unbounded(self) -> Self {
         Self { support: None, ..self }
@@ -232,8 +253,8 @@ impl Widget {
             Shape::Gaussian { center, sigma } => {
                 let nearest = [center[0].max(range.s[0]).min(range.s[1]), center[1].max(range.g[0]).min(range.g[1])];
                 let [x, y] = [0, 1].map(|axis| (nearest[axis] - center[axis]) / sigma[axis]);
-                // -2 ln GAUSSIAN_TAIL; NaN, of a cell without data, is no reason to skip.
-                !(x * x + y * y > 55.262_042_231_857_1)
+                // -2 ln GAUSSIAN_TAIL.
+                x * x + y * y <= 55.262_042_231_857_1
             }
             // Dark on lines only.
             Shape::Wave { .. } => true,
@@ -301,6 +322,11 @@ impl BivariateFunction {
     /// A bound of the opacity over a rectangle, for culling; 0 only where there is nothing.
     pub fn max_opacity_over(&self, range: &Rectangle) -> f64 {
         self.widgets.iter().map(|widget| widget.max_opacity_over(range)).sum()
+    }
+
+    /// The function in other units of s and g: see [`Widget::mapped`].
+    pub fn mapped(&self, origin: [f64; 2], scale: [f64; 2]) -> Self {
+        Self { widgets: self.widgets.iter().map(|widget| widget.mapped(origin, scale)).collect() }
     }
 
     /// Whether any widget may be seen over a rectangle: see [`Widget::is_visible_over`].
