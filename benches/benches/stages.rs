@@ -6,6 +6,7 @@ use std::hint::black_box;
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use tetlux_benches::{cube, cube_mesh, scene, transfer};
 use tetlux_mesh::{Component, TetMesh};
+use tetlux_optics::Classification;
 use tetlux_optics::emission::density_weights;
 use tetlux_optics::segment::weights;
 use tetlux_optics::segment_f32::weights_direct;
@@ -112,11 +113,13 @@ fn picture(c: &mut Criterion) {
 fn reference(c: &mut Criterion) {
     let mesh = cube_mesh(SIDE);
     let scalar = mesh.scalar("waves", Component::Magnitude).unwrap_or_else(|e| panic!("{e}"));
-    let transfer = transfer(true);
+    let classification = Classification::OneField(transfer(true));
     let scene = tetlux_reference::Scene {
         mesh: &mesh,
         scalar: &scalar,
-        transfer: &transfer,
+        second: None,
+        classification: &classification,
+        lighting: None,
         unit_distance: 1.0,
         tolerance: DEFAULT_TOLERANCE,
     };

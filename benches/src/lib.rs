@@ -3,6 +3,7 @@
 use glam::DVec3;
 use tetlux_mesh::procedural::{self, Parts, Split};
 use tetlux_mesh::{Component, Field, TetMesh};
+use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_scene::{Camera, Method, Scene};
 
@@ -32,7 +33,9 @@ pub fn transfer(smooth: bool) -> TransferFunction {
 pub fn scene(mesh: &TetMesh, smooth: bool, method: Method) -> Scene {
     Scene {
         scalar: mesh.scalar("waves", Component::Magnitude).unwrap_or_else(|e| panic!("the cube has the field: {e}")),
-        transfer: transfer(smooth),
+        second: None,
+        classification: Classification::OneField(transfer(smooth)),
+        lighting: None,
         unit_distance: 1.0,
         camera: Camera::framing(mesh.bounds(), DVec3::new(-1.0, 1.5, -0.8), DVec3::Z),
         size: [400, 400],

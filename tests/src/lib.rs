@@ -24,6 +24,7 @@ use glam::DVec3;
 use tetlux_image::Image;
 use tetlux_mesh::procedural::Parts;
 use tetlux_mesh::{Component, Field, TetMesh};
+use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_reference::{Caster, Ray};
 use tetlux_render::Renderer;
@@ -107,7 +108,25 @@ fn camera(position: DVec3, focal_point: DVec3, projection: Projection) -> Camera
 /// A scene on the mesh's first field, of unit distance 1.
 pub fn scene(mesh: &TetMesh, transfer: TransferFunction, camera: Camera, size: [u32; 2]) -> Scene {
     let scalar = mesh.scalar(&mesh.fields()[0].name, Component::Magnitude).unwrap_or_else(|e| panic!("{e}"));
-    Scene { scalar, transfer, unit_distance: 1.0, camera, size, background: [0.0; 3], method: Method::default() }
+    Scene {
+        scalar,
+        second: None,
+        classification: Classification::OneField(transfer),
+        lighting: None,
+        unit_distance: 1.0,
+        camera,
+        size,
+        background: [0.0; 3],
+        method: Method::default(),
+    }
+}
+
+/// The transfer function of a scene that classifies one field.
+pub fn transfer_of(scene: &Scene) -> &TransferFunction {
+    match &scene.classification {
+        Classification::OneField(transfer) => transfer,
+        other => panic!("the test's scene has one field: {other:?}"),
+    }
 }
 
 /// The one renderer of the process: devices and pipelines are made once.
@@ -147,7 +166,9 @@ pub fn reference_beside(mesh: &TetMesh, scene: &Scene, by: [f64; 2]) -> Vec<[f64
     let caster = Caster::new(tetlux_reference::Scene {
         mesh,
         scalar: &scene.scalar,
-        transfer: &scene.transfer,
+        second: scene.second.as_ref(),
+        classification: &scene.classification,
+        lighting: scene.lighting.as_ref().map(|lighting| (&lighting.light, &lighting.gradients[..])),
         unit_distance: scene.unit_distance,
         tolerance: REFERENCE_TOLERANCE,
     })

@@ -33,7 +33,7 @@ fn assert_says(message: &str, parts: &[&str]) {
 fn unknown_keys_are_named_with_their_line() {
     assert_says(&error_after("[image]\nsizes = [10, 10]"), &["a.toml:5:", "sizes", "size"]);
     assert_says(&error_after("[[camera]]\n\nview_angel = 30.0"), &["a.toml:6:", "view_angel", "view_angle"]);
-    assert_says(&error_after("[light]\ncolor = 1"), &["a.toml:4:", "light"]);
+    assert_says(&error_after("[light]\ncolor = 1"), &["a.toml:5:", "color", "ambient"]);
     assert_says(&error("[transfer]\ncolours = []"), &["a.toml:2:", "colours"]);
 }
 
@@ -192,7 +192,7 @@ fn files_and_presets_that_cannot_be_read() {
     // And one that can: two nodes, stretched to the field's range.
     fs::write(folder.path().join("preset.json"), r#"[{"Name": "p", "RGBPoints": [0, 0, 0, 0, 5, 1, 1, 1]}]"#).unwrap();
     let scene = file.scene(&mesh, 0).unwrap();
-    assert_eq!(scene.transfer.color_nodes().last().unwrap().s, 1.0);
+    assert_eq!(tetlux_tests::transfer_of(&scene).color_nodes().last().unwrap().s, 1.0);
 }
 
 #[test]

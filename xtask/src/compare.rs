@@ -123,7 +123,9 @@ fn reference(input: &Input, plan: &Plan) -> Result<Image> {
     let caster = Caster::new(tetlux_reference::Scene {
         mesh: &input.mesh,
         scalar: &input.scene.scalar,
-        transfer: &input.scene.transfer,
+        second: input.scene.second.as_ref(),
+        classification: &input.scene.classification,
+        lighting: input.scene.lighting.as_ref().map(|lighting| (&lighting.light, &lighting.gradients[..])),
         unit_distance: input.scene.unit_distance,
         tolerance: DEFAULT_TOLERANCE,
     })?;

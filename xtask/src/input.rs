@@ -7,8 +7,8 @@ use clap::Args;
 use tetlux_ingest::{TetMesh, read_tet_mesh};
 use tetlux_mesh::procedural;
 use tetlux_scene::{
-    Backend, CellProjection, Classification, Integrator, Interpolation, Order, Projection, Scene, SceneFile, Target,
-    UnitDistance,
+    Backend, CellProjection, Classification, FieldSpec, Integrator, Interpolation, Order, Projection, Scene, SceneFile,
+    Target, TransferSource, UnitDistance,
 };
 
 use crate::mesh_args::{MeshArgs, split_of};
@@ -27,6 +27,18 @@ pub(crate) struct SceneArgs {
     /// Component of a vector field, from 0; default its magnitude
     #[arg(long, value_name = "I")]
     pub(crate) component: Option<usize>,
+    /// Field of the opacity, where it is another than the colour's
+    #[arg(long, value_name = "NAME")]
+    pub(crate) opacity_field: Option<String>,
+    /// Component of the opacity's field, from 0; default its magnitude
+    #[arg(long, value_name = "I", requires = "opacity_field")]
+    pub(crate) opacity_component: Option<usize>,
+    /// Second axis of widgets and of image functions [default: the magnitude of the field's gradient]
+    #[arg(long, value_name = "NAME", conflicts_with = "opacity_field")]
+    pub(crate) second_field: Option<String>,
+    /// Component of the second axis, from 0; default its magnitude
+    #[arg(long, value_name = "I", requires = "second_field")]
+    pub(crate) second_component: Option<usize>,
     /// Which of the scene's cameras, from 0
     #[arg(long, value_name = "I", default_value_t = 0)]
     pub(crate) camera: usize,
@@ -154,6 +166,20 @@ impl SceneArgs {
             (file.field, file.component) = (self.field.clone(), None);
         }
         file.component = self.component.or(file.component);
+        let bivariate = matches!(file.transfer, TransferSource::Widgets(_) | TransferSource::Image { .. });
+        match (&self.opacity_field, &self.second_field) {
+            (Some(_), _) if bivariate => {
+                bail!("{}: --opacity-field is for transfer functions of one field: give --second-field", file.name)
+            }
+            (_, Some(_)) if !bivariate => {
+                bail!("{}: --second-field is for widgets and images: give --opacity-field", file.name)
+            }
+            (Some(name), _) => {
+                file.second = Some(FieldSpec { name: name.clone(), component: self.opacity_component });
+            }
+            (_, Some(name)) => file.second = Some(FieldSpec { name: name.clone(), component: self.second_component }),
+            (None, None) => {}
+        }
         file.size = self.size.unwrap_or(file.size);
         file.unit_distance = self.unit_distance.map_or(file.unit_distance, UnitDistance::Length);
         file.display_space |= self.display_space;

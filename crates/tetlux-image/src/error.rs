@@ -74,8 +74,8 @@ pub enum ImageError {
         source: io::Error,
     },
 
-    /// The file is no readable OpenEXR image: another format, damaged, truncated, or of an unsupported kind.
-    #[error("{path}: cannot decode the OpenEXR image: {reason}; export it again as a flat RGB or RGBA image", path = .path.display())]
+    /// The file is no readable image of its kind: another format, damaged, truncated, or of an unsupported kind.
+    #[error("{path}: cannot decode the image: {reason}; export it again as a flat RGB or RGBA image", path = .path.display())]
     Decode {
         /// The file.
         path: PathBuf,

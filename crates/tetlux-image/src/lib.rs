@@ -34,4 +34,4 @@ pub use error::ImageError;
 pub use exr_file::{METADATA_ATTRIBUTE, read_exr, read_exr_metadata, write_exr};
 pub use image::{Image, MAX_PIXELS, MAX_SIDE};
 pub use metrics::{Metrics, compare};
-pub use png_file::{Encoding, write_png};
+pub use png_file::{Encoding, read_png, write_png};

@@ -1,9 +1,12 @@
 //! PNG files, to be looked at: 8 bits a channel.
 
+use std::fs::File;
+use std::io::BufReader;
 use std::path::Path;
 
-use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
+use png::{BitDepth, ColorType, Decoder, Encoder, SrgbRenderingIntent, Transformations};
 
+use crate::image::pixel_count;
 use crate::{Image, ImageError, write_atomically};
 
 /// How a linear value becomes a stored one.
@@ -26,6 +29,36 @@ pub enum Encoding {
 pub fn write_png(image: &Image, path: &Path, encoding: Encoding) -> Result<(), ImageError> {
     let bytes = encode(image, encoding).map_err(|error| ImageError::encode(path, error))?;
     write_atomically(path, |file| file.write_all(&bytes))
+}
+
+/// Reads a PNG of any colour type as linear RGB and alpha: colours are decoded from sRGB and, as in the file, not
+/// premultiplied. Without an alpha channel alpha is 1. Of 16 bits a channel the upper 8 count.
+///
+/// # Errors
+/// [`ImageError::Io`] if the file cannot be opened, [`ImageError::Decode`] if it is no PNG, is damaged or truncated,
+/// [`ImageError::Size`] if it exceeds the limits of an [`Image`], found before anything of that size is allocated.
+pub fn read_png(path: &Path) -> Result<Image, ImageError> {
+    let file = File::open(path).map_err(|error| ImageError::io(path, "open", error))?;
+    let failed = |error: png::DecodingError| ImageError::decode(path, error);
+    let mut decoder = Decoder::new(BufReader::new(file));
+    decoder.set_transformations(Transformations::normalize_to_color8() | Transformations::ALPHA);
+    let header = decoder.read_header_info().map_err(failed)?;
+    let (width, height) = (header.width, header.height);
+    pixel_count(u64::from(width), u64::from(height))?;
+    let mut reader = decoder.read_info().map_err(failed)?;
+    let size = reader.output_buffer_size().ok_or_else(|| ImageError::decode(path, "it is too large"))?;
+    let mut samples = vec![0; size];
+    reader.next_frame(&mut samples).map_err(failed)?;
+    let linear = |byte: u8| {
+        let value = f32::from(byte) / 255.0;
+        if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+    };
+    let channels = reader.output_color_type().0.samples();
+    let pixels = samples.chunks_exact(channels).map(|s| {
+        let [r, g, b] = if channels < 3 { [s[0]; 3] } else { [s[0], s[1], s[2]] };
+        [linear(r), linear(g), linear(b), f32::from(s[channels - 1]) / 255.0]
+    });
+    Image::from_pixels(width, height, pixels.collect())
 }
 
 fn encode(image: &Image, encoding: Encoding) -> Result<Vec<u8>, png::EncodingError> {
@@ -121,6 +154,42 @@ mod tests {
         let pixels = vec![[-1.0, 2.0, f32::NAN, 1.0], [f32::INFINITY, f32::NEG_INFINITY, 1e30, 3.0]];
         for encoding in [Encoding::Srgb, Encoding::Display] {
             assert_eq!(written(pixels.clone(), encoding), (ColorType::Rgb, vec![0, 255, 0, 255, 0, 255]));
+        }
+    }
+
+    #[test]
+    fn what_was_written_is_read_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("image.png");
+        let straight = [[0.5, 0.25, 1.0, 0.4], [0.0, 1.0, 0.125, 1.0], [0.0, 0.0, 0.0, 0.0]];
+        for pixels in [&straight[..], &straight[1..2]] {
+            let premultiplied = pixels.iter().map(|&[r, g, b, a]| [r * a, g * a, b * a, a]).collect();
+            write_png(&Image::from_pixels(pixels.len() as u32, 1, premultiplied).unwrap(), &path, Encoding::Srgb)
+                .unwrap();
+            let read = read_png(&path).unwrap();
+            for (got, expected) in read.pixels().iter().zip(pixels) {
+                // Half a step of 255 on the steepest part of the inverse curve, slope 2.3.
+                assert!((0..4).all(|c| (got[c] - expected[c]).abs() < 1.2 / 255.0), "{got:?} {expected:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn damaged_files_are_errors() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("image.png");
+        let bytes = encode(&Image::new(5, 4).unwrap(), Encoding::Srgb).unwrap();
+        assert!(read_png(&path).is_err(), "absent");
+        for end in 0..bytes.len() - 12 {
+            fs::write(&path, &bytes[..end]).unwrap();
+            assert!(read_png(&path).is_err(), "{end} of {} bytes", bytes.len());
+        }
+        for at in 0..bytes.len() {
+            let mut changed = bytes.clone();
+            changed[at] ^= 0x55;
+            fs::write(&path, changed).unwrap();
+            // An error or a picture, never a panic.
+            let _ = read_png(&path);
         }
     }
 

@@ -16,11 +16,14 @@
 //! | [`emission`] | emission that is not multiplied by the extinction, and the average model, in f64 |
 //! | [`published`] | the linear closed form as it was published, which is not stable, in f64 |
 //! | [`widget`] | what a bivariate transfer function is: widgets over two scalars |
+//! | [`image_function`] | the same painted as an image |
+//! | [`classification`] | any of these over one or two scalars |
 //! | [`widget_integral`] | segments through widgets in f64, relative error below 1e-12 |
 //! | [`segment_f32`] | the shader's arithmetic in f32, line by line |
 //! | [`symmetric_f32`] | the same weights without division, in f32, as a shader has them |
 //! | [`published_f32`] | the published form in f32, as a shader has it |
 //! | [`transfer_f32`] | whole segments in the shader's arithmetic |
+//! | [`light`], [`light_f32`] | shading by the gradient, silhouettes |
 //! | [`accuracy`] | inputs and measure of the stated f32 errors |
 //! | [`color_space`] | the colour spaces in which presets are interpolated |
 //!
@@ -40,8 +43,12 @@
 //! ```
 
 pub mod accuracy;
+pub mod classification;
 pub mod color_space;
 pub mod emission;
+pub mod image_function;
+pub mod light;
+pub mod light_f32;
 pub mod preset;
 pub mod published;
 pub mod published_f32;
@@ -57,7 +64,10 @@ pub mod transfer_f32;
 pub mod widget;
 pub mod widget_integral;
 
+pub use classification::Classification;
 pub use emission::EmissionConvention;
+pub use image_function::{ImageFunction, ImageFunctionError};
+pub use light::{Light, LightError};
 pub use preset::{Preset, PresetError, read_preset};
 pub use transfer::{ColorNode, OpacityNode, Piece, TransferFunction, TransferFunctionError};
 pub use widget::{BivariateFunction, Widget, WidgetError};

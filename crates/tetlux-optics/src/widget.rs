@@ -18,6 +18,9 @@ use std::f64::consts::PI;
 #[cfg(test)]
 mod tests;
 
+/// Where a Gaussian falls below this share of its peak (beyond 7.4 sigma) nothing of it is taken to be visible.
+pub const GAUSSIAN_TAIL: f64 = 1e-12;
+
 /// A rectangle of the (s, g) plane, ends included. Ends may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
@@ -190,6 +193,27 @@ impl Widget {
         self.color
     }
 
+    /// The widget in other units of s and g: what was at p comes to `origin` + p `scale`, both finite, `scale` above 0.
+    pub fn mapped(&self, origin: [f64; 2], scale: [f64; 2]) -> Self {
+        let place = |p: [f64; 2]| [0, 1].map(|axis| origin[axis] + p[axis] * scale[axis]);
+        let shape = match self.shape {
+            Shape::Uniform => Shape::Uniform,
+            Shape::Gaussian { center, sigma } => {
+                Shape::Gaussian { center: place(center), sigma: [0, 1].map(|axis| sigma[axis] * scale[axis]) }
+            }
+            Shape::Wave { profile, frequency, offset } => {
+                let frequency = [0, 1].map(|axis| frequency[axis] / scale[axis]);
+                let offset = offset - frequency[0] * origin[0] - frequency[1] * origin[1];
+                Shape::Wave { profile, frequency, offset }
+            }
+        };
+        let support = self.support.map(|rectangle| {
+            let [low, high] = [[rectangle.s[0], rectangle.g[0]], [rectangle.s[1], rectangle.g[1]]].map(place);
+            Rectangle { s: [low[0], high[0]], g: [low[1], high[1]] }
+        });
+        Self { shape, support, ..*self }
+    }
+
     /// The same without a support.
     pub(crate) fn unbounded(self) -> Self {
         Self { support: None, ..self }
@@ -216,6 +240,25 @@ impl Widget {
             }
         };
         self.max_opacity * share
+    }
+
+    /// Whether anything of the widget may be seen where s and g stay in a rectangle, for culling: no means that the
+    /// opacity is 0 there or, of a Gaussian, below [`GAUSSIAN_TAIL`] of its peak. Neither exponential nor sine.
+    pub fn is_visible_over(&self, range: &Rectangle) -> bool {
+        if self.max_opacity == 0.0 || self.support.is_some_and(|rectangle| !rectangle.meets(range)) {
+            return false;
+        }
+        match self.shape {
+            Shape::Uniform => true,
+            Shape::Gaussian { center, sigma } => {
+                let nearest = [center[0].max(range.s[0]).min(range.s[1]), center[1].max(range.g[0]).min(range.g[1])];
+                let [x, y] = [0, 1].map(|axis| (nearest[axis] - center[axis]) / sigma[axis]);
+                // -2 ln GAUSSIAN_TAIL.
+                x * x + y * y <= 55.262_042_231_857_1
+            }
+            // Dark on lines only.
+            Shape::Wave { .. } => true,
+        }
     }
 
     /// The largest opacity over a rectangle, for culling; exact but for a rectangle that a support cuts, where it is a
@@ -279,6 +322,16 @@ impl BivariateFunction {
     /// A bound of the opacity over a rectangle, for culling; 0 only where there is nothing.
     pub fn max_opacity_over(&self, range: &Rectangle) -> f64 {
         self.widgets.iter().map(|widget| widget.max_opacity_over(range)).sum()
+    }
+
+    /// The function in other units of s and g: see [`Widget::mapped`].
+    pub fn mapped(&self, origin: [f64; 2], scale: [f64; 2]) -> Self {
+        Self { widgets: self.widgets.iter().map(|widget| widget.mapped(origin, scale)).collect() }
+    }
+
+    /// Whether any widget may be seen over a rectangle: see [`Widget::is_visible_over`].
+    pub fn is_visible_over(&self, range: &Rectangle) -> bool {
+        self.widgets.iter().any(|widget| widget.is_visible_over(range))
     }
 
     /// The colour that all visible widgets share: then the order of segments along a ray does not matter. Black if

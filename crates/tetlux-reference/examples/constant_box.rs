@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tetlux_mesh::procedural::{Split, cuboid};
 use tetlux_mesh::{Component, Field, TetMesh};
-use tetlux_optics::{ColorNode, OpacityNode, TransferFunction};
+use tetlux_optics::{Classification, ColorNode, OpacityNode, TransferFunction};
 use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray, Scene};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -12,8 +12,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scalar = mesh.scalar("s", Component::Magnitude)?;
     let orange = vec![ColorNode { s: 0.0, rgb: [1.0, 0.5, 0.0] }];
     let transfer = TransferFunction::new(orange, vec![OpacityNode { s: 0.0, opacity: 0.5 }])?;
-    let scene =
-        Scene { mesh: &mesh, scalar: &scalar, transfer: &transfer, unit_distance: 1.0, tolerance: DEFAULT_TOLERANCE };
+    let scene = Scene {
+        mesh: &mesh,
+        scalar: &scalar,
+        second: None,
+        classification: &Classification::OneField(transfer),
+        lighting: None,
+        unit_distance: 1.0,
+        tolerance: DEFAULT_TOLERANCE,
+    };
     let ray = Ray { origin: DVec3::new(0.5, 0.5, -3.0), direction: DVec3::Z, start: 0.0, end: f64::INFINITY };
     let seen = Caster::new(scene)?.cast(&ray);
     let expected = 1.0 - (-0.5_f64 * 2.0).exp();

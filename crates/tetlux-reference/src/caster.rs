@@ -5,9 +5,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::{Location, ScalarField, TetMesh};
-use tetlux_optics::TransferFunction;
+use tetlux_optics::{Classification, Light};
 
 use crate::ReferenceError;
+use crate::definition::Definition;
 use crate::hierarchy::Hierarchy;
 use crate::line::Line;
 use crate::quadrature::{Gathered, Integrator, Workspace};
@@ -16,15 +17,19 @@ use crate::walk::{Segment, Space, segments};
 /// The tolerance to take where nothing else is asked.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
 
-/// What is seen: a mesh, its scalar, and how the scalar glows and absorbs.
+/// What is seen: a mesh, its scalars, and how they glow and absorb.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// The mesh.
     pub mesh: &'a TetMesh,
-    /// A scalar of this mesh. Cells with a value that is not finite have no optical depth.
+    /// A scalar of this mesh. Cells with a value that is not finite, of this or the second, have no optical depth.
     pub scalar: &'a ScalarField,
-    /// Luminance and opacity of the scalar.
-    pub transfer: &'a TransferFunction,
+    /// A second scalar of this mesh, where the classification takes two.
+    pub second: Option<&'a ScalarField>,
+    /// Luminance and opacity of the scalars.
+    pub classification: &'a Classification,
+    /// A light, and the gradient of the first scalar at every point, per world length.
+    pub lighting: Option<(&'a Light, &'a [DVec3])>,
     /// World length over which an opacity of 1 is an optical depth of 1; above 0.
     pub unit_distance: f64,
     /// Largest error of a ray's colour and alpha, above 0: see [`DEFAULT_TOLERANCE`]. Rounding adds some 1e-14, and
@@ -54,7 +59,7 @@ pub struct Radiance {
     pub alpha: f64,
     /// Segments of cells along the ray.
     pub segments: usize,
-    /// Points at which the transfer function was asked.
+    /// Points at which the classification was asked.
     pub evaluations: usize,
 }
 
@@ -86,18 +91,28 @@ impl<'a> Caster<'a> {
     ///
     /// If the scalar's length does not fit the mesh, or unit distance or tolerance is not finite and above 0.
     pub fn new(scene: Scene<'a>) -> Result<Self, ReferenceError> {
-        let Scene { mesh, scalar, transfer, unit_distance, tolerance } = scene;
-        let expected = match scalar.location {
-            Location::Point => mesh.points().len(),
-            Location::Cell => mesh.cells().len(),
-        };
-        if scalar.values.len() != expected {
-            return Err(ReferenceError::ScalarLength {
-                name: scalar.name.clone(),
-                found: scalar.values.len(),
-                expected,
-                location: scalar.location.plural(),
-            });
+        let Scene { mesh, scalar, second, classification, lighting, unit_distance, tolerance } = scene;
+        for scalar in [Some(scalar), second].into_iter().flatten() {
+            let expected = match scalar.location {
+                Location::Point => mesh.points().len(),
+                Location::Cell => mesh.cells().len(),
+            };
+            if scalar.values.len() != expected {
+                return Err(ReferenceError::ScalarLength {
+                    name: scalar.name.clone(),
+                    found: scalar.values.len(),
+                    expected,
+                    location: scalar.location.plural(),
+                });
+            }
+        }
+        if classification.is_bivariate() && second.is_none() {
+            return Err(ReferenceError::SecondScalar);
+        }
+        if let Some((_, gradients)) = lighting
+            && gradients.len() != mesh.points().len()
+        {
+            return Err(ReferenceError::Gradients { found: gradients.len(), expected: mesh.points().len() });
         }
         if !(unit_distance.is_finite() && unit_distance > 0.0) {
             return Err(ReferenceError::UnitDistance(unit_distance));
@@ -107,10 +122,12 @@ impl<'a> Caster<'a> {
         }
         let half_width = mesh.points().iter().fold(0.0, |m: f64, p| m.max(p.as_dvec3().abs().max_element()));
         let scale = 0.5 / power_of_two_below(half_width);
-        let mut space = Space { mesh, scalar, scale, empty: Vec::new() };
+        let gradients = lighting.map(|(_, gradients)| gradients);
+        let mut space = Space { mesh, scalars: [Some(scalar), second], gradients, scale, empty: Vec::new() };
         space.empty = (0..mesh.cells().len()).into_par_iter().map(|cell| is_empty(&space, cell)).collect();
         let hierarchy = Hierarchy::new(&space);
-        Ok(Self { hierarchy, space, integrator: Integrator::new(transfer, tolerance), unit_distance })
+        let definition = Definition::new(classification, lighting.map(|(light, _)| light));
+        Ok(Self { hierarchy, space, integrator: Integrator::new(definition, tolerance), unit_distance })
     }
 
     /// The light along one ray: none if its origin or direction is not finite, the direction is 0 or its length,
@@ -127,7 +144,7 @@ impl<'a> Caster<'a> {
             return Radiance::default();
         }
         let Gathered { color, optical_depth, evaluations } =
-            self.integrator.integrate(found, length / self.unit_distance, work);
+            self.integrator.integrate(found, length / self.unit_distance, self.integrator.sight(ray.direction), work);
         Radiance { color, alpha: -(-optical_depth).exp_m1(), segments: found.len(), evaluations }
     }
 
@@ -196,10 +213,10 @@ fn flush(v: DVec3) -> DVec3 {
 /// Whether a cell is flat or misses a value.
 fn is_empty(space: &Space, cell: usize) -> bool {
     let vertices = space.mesh.cells()[cell];
-    let missing = match space.scalar.location {
-        Location::Point => vertices.iter().any(|&v| !space.scalar.values[v as usize].is_finite()),
-        Location::Cell => !space.scalar.values[cell].is_finite(),
-    };
+    let missing = space.scalars.into_iter().flatten().any(|scalar| match scalar.location {
+        Location::Point => vertices.iter().any(|&v| !scalar.values[v as usize].is_finite()),
+        Location::Cell => !scalar.values[cell].is_finite(),
+    });
     let [a, b, c, d] = vertices.map(|v| {
         let p = space.position(v);
         robust::Coord3D { x: p.x, y: p.y, z: p.z }

@@ -15,6 +15,17 @@ pub enum ReferenceError {
         /// "points" or "cells".
         location: &'static str,
     },
+    /// A classification by two scalars has one.
+    #[error("the classification takes two scalars: give the second too")]
+    SecondScalar,
+    /// The gradients do not belong to the mesh.
+    #[error("there are {found} gradients for {expected} points: take them from this mesh")]
+    Gradients {
+        /// Gradients there are.
+        found: usize,
+        /// Points of the mesh.
+        expected: usize,
+    },
     /// The unit distance is not a length.
     #[error("the unit distance is {0}: it must be finite and above 0, in world units")]
     UnitDistance(f64),

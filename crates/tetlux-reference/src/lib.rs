@@ -7,13 +7,13 @@
 //! C = int L(s) tau(s) exp(-int tau) dx,    tau = opacity(s) / unit distance
 //! ```
 //!
-//! adaptively to a stated tolerance. Of a transfer function it takes the definition alone, never a closed form of an
-//! integral: it shares no formula with what it judges.
+//! adaptively to a stated tolerance. Of a classification by one or two scalars, and of a light, it takes the definitions
+//! alone, never a closed form of an integral: it shares no formula with what it judges.
 //!
 //! ```
 //! use glam::DVec3;
 //! use tetlux_mesh::{Component, Field, TetMesh, procedural::{Split, cuboid}};
-//! use tetlux_optics::{ColorNode, OpacityNode, TransferFunction};
+//! use tetlux_optics::{Classification, ColorNode, OpacityNode, TransferFunction};
 //! use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray, Scene};
 //!
 //! let parts = cuboid([2, 2, 2], Split::Six, [DVec3::ZERO, DVec3::splat(3.0)]);
@@ -24,8 +24,15 @@
 //!     vec![ColorNode { s: 0.0, rgb: [1.0; 3] }],
 //!     vec![OpacityNode { s: 0.0, opacity: 0.25 }],
 //! )?;
-//! let scene =
-//!     Scene { mesh: &mesh, scalar: &scalar, transfer: &transfer, unit_distance: 1.0, tolerance: DEFAULT_TOLERANCE };
+//! let scene = Scene {
+//!     mesh: &mesh,
+//!     scalar: &scalar,
+//!     second: None,
+//!     classification: &Classification::OneField(transfer),
+//!     lighting: None,
+//!     unit_distance: 1.0,
+//!     tolerance: DEFAULT_TOLERANCE,
+//! };
 //! let ray = Ray { origin: DVec3::new(1.0, 1.0, -5.0), direction: DVec3::Z, start: 0.0, end: f64::INFINITY };
 //! let seen = Caster::new(scene)?.cast(&ray);
 //! // Three units of extinction 0.25, all white.
@@ -35,6 +42,7 @@
 //! ```
 
 mod caster;
+mod definition;
 mod double;
 mod error;
 mod hierarchy;

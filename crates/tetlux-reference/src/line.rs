@@ -4,6 +4,7 @@ use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
 use crate::double;
+use crate::walk::Values;
 
 /// Mutually orthogonal directions, none along a grid's axis or diagonal: the auxiliary directions are two of them.
 const FRAME: [DVec3; 3] =
@@ -20,7 +21,7 @@ pub(crate) struct Vertex {
     pub(crate) position: DVec3,
     /// Parameter of the vertex's foot on the line.
     pub(crate) t: f64,
-    pub(crate) scalar: f64,
+    pub(crate) values: Values,
 }
 
 /// How a line passes a directed edge.
@@ -140,7 +141,7 @@ mod tests {
         let mut index = 0;
         points.map(|position| {
             index += 1;
-            Vertex { index, position, t: 0.0, scalar: 0.0 }
+            Vertex { index, position, t: 0.0, values: [0.0; 5] }
         })
     }
 

@@ -1,7 +1,8 @@
 //! Adaptive quadrature of the emission-absorption integral along the segments of a ray.
 
-use tetlux_optics::TransferFunction;
+use glam::DVec3;
 
+use crate::definition::{Definition, Inside, Sight};
 use crate::rule::Rule;
 use crate::walk::Segment;
 
@@ -24,11 +25,10 @@ pub(crate) struct Gathered {
     pub(crate) evaluations: usize,
 }
 
-/// A segment between two neighbouring control points.
+/// A segment between two neighbouring cuts.
 struct Layer {
     segment: Segment,
-    /// The control points around it; infinite at the ends of the axis.
-    between: [f64; 2],
+    inside: Inside,
 }
 
 /// The integral over a panel as one rule sees it, light weighted by the transmittance from the panel's front.
@@ -44,27 +44,28 @@ pub(crate) struct Workspace {
     ends: Vec<f64>,
     active: Vec<Segment>,
     cuts: Vec<f64>,
+    shares: Vec<f64>,
     layers: Vec<Layer>,
 }
 
-/// The integrator of one transfer function.
+/// The integrator of one classification.
 ///
-/// Cuts at the control points leave panels on which the functions are smooth; it assumes no more. On a panel the
+/// Cuts where it is not smooth (control points, edges and kinks of widgets) leave panels on which the functions are smooth; it assumes no more. On a panel the
 /// optical depth at the nodes is the integral of the polynomial through the extinctions. Gauss-Legendre rules of 3
 /// and 5, then 5 and 8 points are compared; where they differ by more than the panel's share of the tolerance,
 /// which is its share of the ray's length in the mesh, it is halved.
 pub(crate) struct Integrator<'a> {
-    transfer: &'a TransferFunction,
-    control_points: Vec<f64>,
+    definition: Definition<'a>,
     /// The brightest luminance, at least 1: what an error of the transmittance may cost.
     brightest: f64,
     tolerance: f64,
     rules: (Rule<3>, Rule<5>, Rule<8>),
 }
 
-/// One ray's scales.
+/// One ray's scales, and how it sees.
 #[derive(Clone, Copy)]
 struct Scales {
+    sight: Sight,
     /// Extinction per parameter, of opacity 1.
     extinction: f64,
     /// Error allowed per parameter.
@@ -72,22 +73,27 @@ struct Scales {
 }
 
 impl<'a> Integrator<'a> {
-    pub(crate) fn new(transfer: &'a TransferFunction, tolerance: f64) -> Self {
-        let brightest = transfer.color_nodes().iter().flat_map(|node| node.rgb).fold(1.0, f64::max);
-        Self {
-            transfer,
-            control_points: transfer.control_points(),
-            brightest,
-            tolerance,
-            rules: (Rule::new(), Rule::new(), Rule::new()),
-        }
+    pub(crate) fn new(definition: Definition<'a>, tolerance: f64) -> Self {
+        let brightest = definition.brightest();
+        Self { definition, brightest, tolerance, rules: (Rule::new(), Rule::new(), Rule::new()) }
+    }
+
+    /// How a ray of this direction sees.
+    pub(crate) fn sight(&self, direction: DVec3) -> Sight {
+        self.definition.sight(direction)
     }
 
     /// Integrates over segments in ascending order of their starts. `extinction` is that of opacity 1, per parameter.
     /// Where segments overlap, extinctions and emissions add.
-    pub(crate) fn integrate(&self, segments: &[Segment], extinction: f64, work: &mut Workspace) -> Gathered {
+    pub(crate) fn integrate(
+        &self,
+        segments: &[Segment],
+        extinction: f64,
+        sight: Sight,
+        work: &mut Workspace,
+    ) -> Gathered {
         let length: f64 = segments.iter().map(|s| s.t[1] - s.t[0]).sum();
-        let scales = Scales { extinction, error: self.tolerance / length };
+        let scales = Scales { sight, extinction, error: self.tolerance / length };
         let mut gathered = Gathered::default();
         if segments.is_sorted_by(|a, b| a.t[1] <= b.t[0]) {
             for segment in segments {
@@ -126,14 +132,14 @@ impl<'a> Integrator<'a> {
         if segments.is_empty() || self.hidden(sum) {
             return;
         }
-        let Workspace { cuts, layers, .. } = work;
+        let Workspace { cuts, shares, layers, .. } = work;
         cuts.clear();
         cuts.push(from);
         for segment in segments {
-            let [low, high] = [segment.scalar[0].min(segment.scalar[1]), segment.scalar[0].max(segment.scalar[1])];
-            let first = self.control_points.partition_point(|&c| c <= low);
-            let crossed = self.control_points[first..].iter().take_while(|&&c| c < high);
-            cuts.extend(crossed.map(|&c| parameter_at(segment, c)).filter(|&t| from < t && t < to));
+            shares.clear();
+            self.definition.cuts(segment, &scales.sight, shares);
+            let place = |share: f64| segment.t[0] + (segment.t[1] - segment.t[0]) * share;
+            cuts.extend(shares.iter().map(|&share| place(share)).filter(|&t| from < t && t < to));
         }
         cuts.push(to);
         if cuts.len() > 2 {
@@ -144,18 +150,13 @@ impl<'a> Integrator<'a> {
             if panel[0] < panel[1] {
                 let middle = 0.5 * (panel[0] + panel[1]);
                 layers.clear();
-                layers.extend(segments.iter().map(|&segment| self.layer(segment, scalar_at(&segment, middle))));
+                layers.extend(segments.iter().map(|&segment| {
+                    let inside = self.definition.inside(&segment.at(middle));
+                    Layer { segment, inside }
+                }));
                 self.panel(layers, panel, scales, 0, sum);
             }
         }
-    }
-
-    /// The segment as seen between the control points around the scalar `inside`; one at `inside` is below it.
-    fn layer(&self, segment: Segment, inside: f64) -> Layer {
-        let next = self.control_points.partition_point(|&c| c <= inside);
-        let low = next.checked_sub(1).map_or(f64::NEG_INFINITY, |i| self.control_points[i]);
-        let high = self.control_points.get(next).copied().unwrap_or(f64::INFINITY);
-        Layer { segment, between: [low, high] }
     }
 
     fn panel(&self, layers: &[Layer], [a, b]: [f64; 2], scales: Scales, halvings: u32, sum: &mut Gathered) {
@@ -216,11 +217,10 @@ impl<'a> Integrator<'a> {
         for i in 0..N {
             let t = a + (b - a) * rule.nodes[i];
             for layer in layers {
-                let (opacity, luminance) = self.look_up(layer, t);
-                let extinction = opacity * scales.extinction;
-                extinctions[i] += extinction;
+                let here = self.definition.look_up(&layer.inside, &layer.segment.at(t), &scales.sight);
+                extinctions[i] += here.opacity * scales.extinction;
                 for channel in 0..3 {
-                    emissions[i][channel] += luminance[channel] * extinction;
+                    emissions[i][channel] += here.emission[channel] * scales.extinction;
                 }
             }
         }
@@ -240,39 +240,10 @@ impl<'a> Integrator<'a> {
         estimate
     }
 
-    /// Opacity and luminance at a parameter, as limits from inside the layer.
-    fn look_up(&self, layer: &Layer, t: f64) -> (f64, [f64; 3]) {
-        let [low, high] = layer.between;
-        let s = scalar_at(&layer.segment, t).clamp(low, high);
-        let below = s == high;
-        let opacity = if below { self.transfer.opacity_below(s) } else { self.transfer.opacity(s) };
-        if opacity == 0.0 {
-            return (0.0, [0.0; 3]);
-        }
-        (opacity, if below { self.transfer.luminance_below(s) } else { self.transfer.luminance(s) })
-    }
-
     /// Whether nothing that is still to come can be seen.
     fn hidden(&self, sum: &Gathered) -> bool {
         sum.optical_depth > 1.0 && (-sum.optical_depth).exp() * self.brightest < HIDDEN * self.tolerance
     }
-}
-
-fn scalar_at(segment: &Segment, t: f64) -> f64 {
-    let [s0, s1] = segment.scalar;
-    if s0 == s1 {
-        return s0;
-    }
-    let share = (t - segment.t[0]) / (segment.t[1] - segment.t[0]);
-    s0 * (1.0 - share) + s1 * share
-}
-
-/// Where the scalar takes a value between its ends'.
-fn parameter_at(segment: &Segment, value: f64) -> f64 {
-    let [s0, s1] = segment.scalar;
-    // Halves, so that the difference of two large scalars does not overflow.
-    let share = (0.5 * value - 0.5 * s0) / (0.5 * s1 - 0.5 * s0);
-    segment.t[0] + (segment.t[1] - segment.t[0]) * share
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tetlux_mesh::procedural::Parts;
 use tetlux_mesh::{Component, Field, ScalarField, TetMesh};
-use tetlux_optics::{ColorNode, OpacityNode, TransferFunction};
+use tetlux_optics::{Classification, ColorNode, OpacityNode, TransferFunction};
 
 use crate::{Caster, DEFAULT_TOLERANCE, Radiance, Ray, Scene};
 
@@ -28,26 +28,34 @@ impl Body {
         Self { mesh, scalar }
     }
 
-    pub(crate) fn scene<'a>(&'a self, transfer: &'a TransferFunction) -> Scene<'a> {
-        Scene { mesh: &self.mesh, scalar: &self.scalar, transfer, unit_distance: 1.0, tolerance: DEFAULT_TOLERANCE }
+    pub(crate) fn scene<'a>(&'a self, classification: &'a Classification) -> Scene<'a> {
+        Scene {
+            mesh: &self.mesh,
+            scalar: &self.scalar,
+            second: None,
+            classification,
+            lighting: None,
+            unit_distance: 1.0,
+            tolerance: DEFAULT_TOLERANCE,
+        }
     }
 
-    pub(crate) fn caster<'a>(&'a self, transfer: &'a TransferFunction) -> Caster<'a> {
-        Caster::new(self.scene(transfer)).unwrap()
+    pub(crate) fn caster<'a>(&'a self, classification: &'a Classification) -> Caster<'a> {
+        Caster::new(self.scene(classification)).unwrap()
     }
 }
 
 /// Nodes of opacity and of one luminance component (the same in all channels).
-pub(crate) fn transfer(opacity: &[[f64; 2]], luminance: &[[f64; 2]]) -> TransferFunction {
-    TransferFunction::new(
+pub(crate) fn transfer(opacity: &[[f64; 2]], luminance: &[[f64; 2]]) -> Classification {
+    let nodes = TransferFunction::new(
         luminance.iter().map(|&[s, l]| ColorNode { s, rgb: [l; 3] }).collect(),
         opacity.iter().map(|&[s, opacity]| OpacityNode { s, opacity }).collect(),
-    )
-    .unwrap()
+    );
+    Classification::OneField(nodes.unwrap())
 }
 
 /// White everywhere, of one opacity.
-pub(crate) fn fog(opacity: f64) -> TransferFunction {
+pub(crate) fn fog(opacity: f64) -> Classification {
     transfer(&[[0.0, opacity]], &[[0.0, 1.0]])
 }
 

@@ -6,19 +6,34 @@ use tetlux_mesh::{Location, NONE, ScalarField, TetMesh};
 use crate::hierarchy::{BoundaryFace, Hierarchy};
 use crate::line::{Line, Vertex};
 
-/// A stretch of a line with the scalar linear along it.
+/// What is known of a point: the two scalars, and the gradient of the first. What a scene does not use is 0.
+pub(crate) type Values = [f64; 5];
+
+/// A stretch of a line with all values linear along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Segment {
     /// Parameter of its ends, ascending.
     pub(crate) t: [f64; 2],
-    /// Scalar at its ends.
-    pub(crate) scalar: [f64; 2],
+    /// Values at its ends.
+    pub(crate) values: [Values; 2],
+}
+
+impl Segment {
+    /// Values at a parameter; a value that is the same at both ends is that everywhere.
+    pub(crate) fn at(&self, t: f64) -> Values {
+        let share = (t - self.t[0]) / (self.t[1] - self.t[0]);
+        let [front, back] = &self.values;
+        std::array::from_fn(|k| if front[k] == back[k] { front[k] } else { front[k] * (1.0 - share) + back[k] * share })
+    }
 }
 
 /// The mesh in coordinates of about unit size: relative to its origin, times a power of two, hence exact.
 pub(crate) struct Space<'a> {
     pub(crate) mesh: &'a TetMesh,
-    pub(crate) scalar: &'a ScalarField,
+    /// The first scalar, and the second if there is one.
+    pub(crate) scalars: [Option<&'a ScalarField>; 2],
+    /// The gradient of the first scalar at the points, if it is asked for.
+    pub(crate) gradients: Option<&'a [DVec3]>,
     /// Power of two that takes the mesh's half-width into [0.5, 1).
     pub(crate) scale: f64,
     /// Cells without optical depth: flat, or with a value missing.
@@ -32,11 +47,25 @@ impl Space<'_> {
 
     fn vertex(&self, line: &Line, index: u32) -> Vertex {
         let position = self.position(index);
-        let scalar = match self.scalar.location {
-            Location::Point => self.scalar.values[index as usize],
-            Location::Cell => 0.0,
+        let by_point = |scalar: Option<&ScalarField>| {
+            scalar.filter(|s| s.location == Location::Point).map_or(0.0, |s| s.values[index as usize])
         };
-        Vertex { index, position, t: line.parameter(position), scalar }
+        let [x, y] = self.scalars.map(by_point);
+        let gradient = self.gradients.map_or(DVec3::ZERO, |gradients| gradients[index as usize]);
+        let values = [x, y, gradient.x, gradient.y, gradient.z];
+        Vertex { index, position, t: line.parameter(position), values }
+    }
+
+    /// The values of a segment in a cell, with those that are the cell's own.
+    fn in_cell(&self, cell: usize, mut values: [Values; 2]) -> [Values; 2] {
+        for (axis, scalar) in self.scalars.into_iter().enumerate() {
+            if let Some(scalar) = scalar.filter(|s| s.location == Location::Cell) {
+                for end in &mut values {
+                    end[axis] = scalar.values[cell];
+                }
+            }
+        }
+        values
     }
 }
 
@@ -62,8 +91,8 @@ impl Crossing {
         Some(Self { vertices: v, sides })
     }
 
-    /// Parameter and scalar where the line crosses: the sides are barycentric coordinates, times a common factor.
-    fn place(&self) -> (f64, f64) {
+    /// Parameter and values where the line crosses: the sides are barycentric coordinates, times a common factor.
+    fn place(&self) -> (f64, Values) {
         let [a, b, c] = &self.vertices;
         let [wc, wa, wb] = self.sides;
         let sum = wa + wb + wc;
@@ -71,7 +100,8 @@ impl Crossing {
         // origin, which is outside the mesh.
         let per = if sum > 0.0 { 1.0 / sum } else { 0.0 };
         let mix = |x: f64, y: f64, z: f64| (wa * per) * x + (wb * per) * y + (wc * per) * z;
-        (mix(a.t, b.t, c.t), mix(a.scalar, b.scalar, c.scalar))
+        let values = std::array::from_fn(|k| mix(a.values[k], b.values[k], c.values[k]));
+        (mix(a.t, b.t, c.t), values)
     }
 }
 
@@ -106,7 +136,7 @@ fn walk(
     found: &mut Vec<Segment>,
 ) {
     let cells = space.mesh.cells();
-    let (mut t, mut scalar) = face.place();
+    let (mut t, mut values) = face.place();
     // Each cell is crossed at most once; the bound keeps a contradiction from looping for ever.
     for _ in 0..cells.len() {
         if cell == NONE || t >= end {
@@ -128,16 +158,13 @@ fn walk(
             vertices: [face.vertices[k], face.vertices[next], apex],
             sides: [face.sides[k], sides[next].value, -sides[k].value],
         };
-        let (leave, leave_scalar) = face.place();
+        let (leave, leave_values) = face.place();
         let leave = leave.max(t);
         if !space.empty[cell as usize] {
-            let scalars = match space.scalar.location {
-                Location::Point => [scalar, leave_scalar],
-                Location::Cell => [space.scalar.values[cell as usize]; 2],
-            };
-            found.extend(clip(Segment { t: [t, leave], scalar: scalars }, [start, end]));
+            let values = space.in_cell(cell as usize, [values, leave_values]);
+            found.extend(clip(Segment { t: [t, leave], values }, [start, end]));
         }
-        (t, scalar) = (leave, leave_scalar);
+        (t, values) = (leave, leave_values);
         cell = space.mesh.neighbors()[cell as usize][exit];
     }
     debug_assert!(cell == NONE, "the line crosses more cells than there are");
@@ -147,13 +174,9 @@ fn walk(
 fn clip(segment: Segment, [start, end]: [f64; 2]) -> Option<Segment> {
     let [from, to] = segment.t;
     let t = [from.max(start), to.min(end)];
-    let scalar_at = |x: f64| {
-        let share = (x - from) / (to - from);
-        segment.scalar[0] * (1.0 - share) + segment.scalar[1] * share
-    };
-    let scalar = [
-        if t[0] == from { segment.scalar[0] } else { scalar_at(t[0]) },
-        if t[1] == to { segment.scalar[1] } else { scalar_at(t[1]) },
+    let values = [
+        if t[0] == from { segment.values[0] } else { segment.at(t[0]) },
+        if t[1] == to { segment.values[1] } else { segment.at(t[1]) },
     ];
-    (t[0] < t[1]).then_some(Segment { t, scalar })
+    (t[0] < t[1]).then_some(Segment { t, values })
 }

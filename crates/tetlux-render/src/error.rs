@@ -6,6 +6,9 @@ use tetlux_shaders::ComposeError;
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
+    /// The scene takes two fields.
+    #[error("classification by two fields is not drawn yet")]
+    Bivariate,
     /// The plan wants a graphics adapter and there is none.
     #[error("there is no graphics adapter: use the CPU back end, or install a driver")]
     NoAdapter,

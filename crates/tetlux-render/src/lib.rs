@@ -48,6 +48,7 @@ use std::ops::Range;
 
 use tetlux_image::Image;
 use tetlux_mesh::TetMesh;
+use tetlux_optics::Classification;
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::Eye;
 use tetlux_scene::{Backend, Device, Integrator, Order, Plan, Scene};
@@ -126,7 +127,8 @@ impl Renderer {
         };
         let device_mesh = stages.run("prepare", || DeviceMesh::new(mesh, &scene.scalar));
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
-        let pieces = pieces(&scene.transfer, scene.scalar.range, 1.0 / (scene.unit_distance * device_mesh.scale));
+        let Classification::OneField(transfer) = &scene.classification else { return Err(RenderError::Bivariate) };
+        let pieces = pieces(transfer, scene.scalar.range, 1.0 / (scene.unit_distance * device_mesh.scale));
         let weights = match plan.integrator {
             Integrator::Average => Weights::Average,
             // The CPU back end has these two: the plan sees to it.

@@ -1,18 +1,24 @@
 //! The scene file as TOML: keys, types, and the places of impossible values.
 
+mod light;
+mod transfer;
+mod widget;
+
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use serde::Deserialize;
-use tetlux_optics::transfer::{ColorNode, NodeKind, OpacityNode, TransferFunction, TransferFunctionError};
 use toml::Spanned;
 
-use crate::file::{CameraSpec, NodeRange, TransferSource, UnitDistance};
+use crate::file::CameraSpec;
 use crate::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneError,
     SceneFile, Target,
 };
+use light::LightTable;
+use transfer::Transfer;
+use widget::WidgetTable;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -24,6 +30,9 @@ struct Document {
     #[serde(default)]
     field: Field,
     transfer: Spanned<Transfer>,
+    #[serde(default)]
+    widget: Vec<Spanned<WidgetTable>>,
+    light: Option<Spanned<LightTable>>,
     #[serde(default)]
     camera: Vec<Spanned<Camera>>,
     #[serde(default)]
@@ -45,20 +54,6 @@ struct Mesh {
 struct Field {
     name: Option<String>,
     component: Option<usize>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Transfer {
-    color: Option<Vec<Spanned<[f64; 4]>>>,
-    opacity: Option<Vec<Spanned<[f64; 2]>>>,
-    preset: Option<PathBuf>,
-    preset_name: Option<String>,
-    range: Option<Spanned<[f64; 2]>>,
-    #[serde(default)]
-    fit_to_field: bool,
-    unit_distance: Option<Spanned<f64>>,
-    relative_unit_distance: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -115,7 +110,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
     })?;
     let beside = |file: PathBuf| path.parent().unwrap_or(Path::new("")).join(file);
 
-    let Document { title, mesh, field, transfer, camera, image, method } = document;
+    let Document { title, mesh, field, transfer, widget, light, camera, image, method } = document;
     if let Some(split) = &mesh.split
         && ![5, 6].contains(split.get_ref())
     {
@@ -146,8 +141,10 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
         split: mesh.split.map(Spanned::into_inner),
         field: field.name,
         component: field.component,
+        second: source.second(&transfer, &widget)?,
         range: source.range(&transfer)?,
-        transfer: source.transfer(transfer, beside)?,
+        transfer: source.transfer(&transfer, &widget, beside)?,
+        light: light.map(|light| source.light(&light)).transpose()?,
         unit_distance,
         cameras: camera.into_iter().map(|c| source.camera(c)).collect::<Result<_, _>>()?,
         size,
@@ -185,77 +182,6 @@ impl Source<'_> {
                 Err(self.value(v, key, format!("{} must be positive and finite", v.get_ref())))
             }
             _ => Ok(value.map(|v| *v.get_ref())),
-        }
-    }
-
-    fn unit_distance(&self, transfer: &Transfer) -> Result<UnitDistance, SceneError> {
-        let length = self.positive(transfer.unit_distance.as_ref(), "unit_distance")?;
-        let share = self.positive(transfer.relative_unit_distance.as_ref(), "relative_unit_distance")?;
-        match (length, share, &transfer.unit_distance) {
-            (Some(_), Some(_), Some(at)) => {
-                Err(self.value(at, "unit_distance", "is given relatively too: keep one of them".into()))
-            }
-            (Some(length), ..) => Ok(UnitDistance::Length(length)),
-            (None, Some(share), _) => Ok(UnitDistance::OfDiagonal(share)),
-            (None, None, _) => Ok(UnitDistance::MeanEdge),
-        }
-    }
-
-    fn range(&self, transfer: &Spanned<Transfer>) -> Result<NodeRange, SceneError> {
-        let t = transfer.get_ref();
-        let Some(range) = &t.range else {
-            return Ok(if t.fit_to_field || t.preset.is_some() { NodeRange::Field } else { NodeRange::AsGiven });
-        };
-        if t.fit_to_field {
-            return Err(self.value(range, "range", "is given and fit_to_field too: keep one of them".into()));
-        }
-        let [lo, hi] = *range.get_ref();
-        if lo < hi && lo.is_finite() && hi.is_finite() {
-            Ok(NodeRange::Given([lo, hi]))
-        } else {
-            Err(self.value(range, "range", format!("[{lo}, {hi}] must ascend and be finite")))
-        }
-    }
-
-    fn transfer(
-        &self,
-        transfer: Spanned<Transfer>,
-        beside: impl Fn(PathBuf) -> PathBuf,
-    ) -> Result<TransferSource, SceneError> {
-        let refuse = |message: &str| Err(self.value(&transfer, "transfer", message.into()));
-        let t = transfer.get_ref();
-        match (&t.preset, &t.color, &t.opacity) {
-            (Some(preset), None, None) => {
-                Ok(TransferSource::Preset { path: beside(preset.clone()), name: t.preset_name.clone() })
-            }
-            (Some(_), ..) => refuse("has a preset and nodes: keep one of them"),
-            (None, Some(color), Some(opacity)) => {
-                if t.preset_name.is_some() {
-                    return refuse("has a preset_name without a preset");
-                }
-                let nodes = TransferFunction::new(
-                    color.iter().map(|n| *n.get_ref()).map(|[s, r, g, b]| ColorNode { s, rgb: [r, g, b] }).collect(),
-                    opacity.iter().map(|n| *n.get_ref()).map(|[s, opacity]| OpacityNode { s, opacity }).collect(),
-                );
-                nodes.map(TransferSource::Nodes).map_err(|error| {
-                    use TransferFunctionError::{Crowded, Empty, Order, Position, Value};
-                    let (kind, index) = match error {
-                        Position { kind, index, .. }
-                        | Order { kind, index, .. }
-                        | Crowded { kind, index, .. }
-                        | Value { kind, index, .. } => (kind, index),
-                        Empty { .. } => return self.value(&transfer, "transfer", error.to_string()),
-                    };
-                    match kind {
-                        NodeKind::Color => self.value(&color[index], "color", error.to_string()),
-                        NodeKind::Opacity => self.value(&opacity[index], "opacity", error.to_string()),
-                    }
-                })
-            }
-            (None, ..) => refuse(
-                "needs color = [[scalar, red, green, blue], ...] and opacity = [[scalar, opacity], ...], \
-                 or preset = \"file.json\"",
-            ),
         }
     }
 

@@ -54,6 +54,17 @@ pub enum SceneError {
         /// What is wrong with it.
         source: PresetError,
     },
+    /// An image could not be read.
+    #[error(transparent)]
+    ImageFile(#[from] tetlux_image::ImageError),
+    /// An image holds no transfer function.
+    #[error("{}: {source}", path.display())]
+    Image {
+        /// The image file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: tetlux_optics::ImageFunctionError,
+    },
     /// The field cannot be had.
     #[error(transparent)]
     Field(#[from] MeshError),

@@ -3,11 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use tetlux_mesh::{Component, TetMesh};
+use tetlux_image::{read_exr, read_png};
+use tetlux_mesh::{Component, Location, ScalarField, TetMesh};
 use tetlux_optics::preset::read_preset;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
+use tetlux_optics::widget::BivariateFunction;
+use tetlux_optics::{Classification, ImageFunction, Light};
 
-use crate::{Camera, Method, Projection, Scene, SceneError, document};
+use crate::{Camera, Lighting, Method, Projection, Scene, SceneError, document};
 
 /// A scene without its mesh: plain values, which command-line flags may override.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,10 +27,15 @@ pub struct SceneFile {
     pub field: Option<String>,
     /// A component of a vector field, from 0; none: its magnitude.
     pub component: Option<usize>,
-    /// Luminance and opacity over it.
+    /// The field of the opacity, where it is another; the second axis of widgets and images. None: there is no other,
+    /// or it is the magnitude of the first field's gradient.
+    pub second: Option<FieldSpec>,
+    /// Luminance and opacity over the field, or both.
     pub transfer: TransferSource,
     /// Where the first and last node lie.
     pub range: NodeRange,
+    /// Light by the gradient of the field.
+    pub light: Option<Light>,
     /// World length over which an opacity of 1 is an optical depth of 1.
     pub unit_distance: UnitDistance,
     /// Cameras; none: one is framed automatically.
@@ -56,6 +64,27 @@ pub enum TransferSource {
         /// Which of its presets; none: its only one.
         name: Option<String>,
     },
+    /// Widgets over two fields.
+    Widgets(BivariateFunction),
+    /// A picture of a function of two fields: luminance and, as alpha, opacity; its top row lies at the upper end of the
+    /// second field.
+    Image {
+        /// The file: EXR (values as they are, colour not premultiplied) or PNG (sRGB).
+        path: PathBuf,
+        /// What it spans along each axis; none: the fields' ranges.
+        range: Option<[[f64; 2]; 2]>,
+        /// The opacity of alpha 1.
+        max_opacity: f64,
+    },
+}
+
+/// A scalar by name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FieldSpec {
+    /// The field.
+    pub name: String,
+    /// A component of a vector field, from 0; none: its magnitude.
+    pub component: Option<usize>,
 }
 
 /// Where the first and last node of a transfer function lie.
@@ -126,9 +155,19 @@ impl SceneFile {
                 )));
             }
         };
-        let scalar = mesh.scalar(&field, self.component.map_or(Component::Magnitude, Component::Index))?;
+        let scalar = mesh.scalar(&field, component(self.component))?;
+        let bivariate = matches!(self.transfer, TransferSource::Widgets(_) | TransferSource::Image { .. });
+        // Neither gradients nor a second scalar where the scene does not ask for them.
+        let gradients = self.light.is_some() || (bivariate && self.second.is_none());
+        let gradients = gradients.then(|| mesh.vertex_gradients(&scalar));
+        let second = match (&self.second, &gradients) {
+            (Some(field), _) => Some(mesh.scalar(&field.name, component(field.component))?),
+            (None, Some(gradients)) if bivariate => Some(gradient_magnitude(&scalar, gradients)),
+            (None, _) => None,
+        };
         Ok(Scene {
-            transfer: self.transfer(scalar.range)?,
+            classification: self.classification(scalar.range, second.as_ref().map(|second| second.range))?,
+            lighting: self.light.zip(gradients).map(|(light, gradients)| Lighting { light, gradients }),
             unit_distance: match self.unit_distance {
                 UnitDistance::MeanEdge => mesh.mean_edge_length(),
                 UnitDistance::Length(length) => length,
@@ -142,16 +181,37 @@ impl SceneFile {
             background: self.background,
             method: self.method,
             scalar,
+            second,
         })
     }
 
-    fn transfer(&self, [lowest, highest]: [f64; 2]) -> Result<TransferFunction, SceneError> {
+    /// The classification over fields of these ranges.
+    fn classification(&self, first: [f64; 2], second: Option<[f64; 2]>) -> Result<Classification, SceneError> {
+        let ranges = [first, second.unwrap_or(first)].map(with_width);
+        match (&self.transfer, second) {
+            (TransferSource::Widgets(function), _) => {
+                let fitted = || function.mapped(ranges.map(|r| r[0]), ranges.map(|r| r[1] - r[0]));
+                let fit = self.range == NodeRange::Field;
+                Ok(Classification::Widgets(if fit { fitted() } else { function.clone() }))
+            }
+            (TransferSource::Image { path, range, max_opacity }, _) => {
+                image_function(path, range.unwrap_or(ranges), *max_opacity).map(Classification::Image)
+            }
+            (_, None) => Ok(Classification::OneField(self.transfer(first)?)),
+            (_, Some(second)) => {
+                let (color, opacity) = (self.transfer(first)?, self.transfer(second)?);
+                let nodes = TransferFunction::new(color.color_nodes().to_vec(), opacity.opacity_nodes().to_vec());
+                // Each list is one that a transfer function had already.
+                Ok(Classification::TwoFields(nodes.unwrap_or(color)))
+            }
+        }
+    }
+
+    fn transfer(&self, field_range: [f64; 2]) -> Result<TransferFunction, SceneError> {
         let range = match self.range {
             NodeRange::AsGiven => None,
             NodeRange::Given(range) => Some(range),
-            // A constant field has no range to span: its value takes the lower end.
-            NodeRange::Field if lowest == highest => Some([lowest, lowest + lowest.abs().max(1.0)]),
-            NodeRange::Field => Some([lowest, highest]),
+            NodeRange::Field => Some(with_width(field_range)),
         };
         match (&self.transfer, range) {
             (TransferSource::Nodes(nodes), None) => Ok(nodes.clone()),
@@ -160,6 +220,9 @@ impl SceneFile {
                 let failed = |source| SceneError::Preset { path: path.clone(), source };
                 let preset = read_preset(&read_text(path)?, name.as_deref()).map_err(failed)?;
                 preset.transfer_function(range).map_err(failed)
+            }
+            (TransferSource::Widgets(_) | TransferSource::Image { .. }, _) => {
+                Err(self.missing("widgets and images are no transfer function of one field".into()))
             }
         }
     }
@@ -197,6 +260,38 @@ impl SceneFile {
     fn missing(&self, message: String) -> SceneError {
         SceneError::Missing { path: self.name.clone(), message }
     }
+}
+
+fn component(number: Option<usize>) -> Component {
+    number.map_or(Component::Magnitude, Component::Index)
+}
+
+/// A constant field has no range to span: its value takes the lower end.
+fn with_width([lowest, highest]: [f64; 2]) -> [f64; 2] {
+    if lowest == highest { [lowest, lowest + lowest.abs().max(1.0)] } else { [lowest, highest] }
+}
+
+/// The magnitude of a gradient at every point; linear in each cell, as Song et al. 2009 have it.
+fn gradient_magnitude(scalar: &ScalarField, gradients: &[DVec3]) -> ScalarField {
+    let values: Vec<f64> = gradients.iter().map(|gradient| gradient.length()).collect();
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));
+    ScalarField {
+        name: format!("gradient magnitude of {}", scalar.name),
+        location: Location::Point,
+        range: [low.min(high), high],
+        missing: values.iter().filter(|value| !value.is_finite()).count(),
+        values,
+    }
+}
+
+fn image_function(path: &Path, range: [[f64; 2]; 2], max_opacity: f64) -> Result<ImageFunction, SceneError> {
+    let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let image = if is_png { read_png(path)? } else { read_exr(path)? };
+    let width = image.width() as usize;
+    let rows = image.pixels().chunks(width).rev();
+    let texels = rows.flatten().map(|&[r, g, b, a]| [r, g, b, (f64::from(a) * max_opacity) as f32]).collect();
+    ImageFunction::new(width, texels, range).map_err(|source| SceneError::Image { path: path.into(), source })
 }
 
 /// A transfer function with its first and last control point moved to the ends of a range.

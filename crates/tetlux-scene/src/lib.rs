@@ -1,6 +1,6 @@
 //! What is to be rendered, and what of it need not be.
 //!
-//! A [`Scene`] is a transfer function, a camera, a picture size and a method, read from a TOML file
+//! A [`Scene`] is a classification, a camera, a picture size and a method, read from a TOML file
 //! ([`SceneFile`]) or made in code; a [`View`] is its camera resolved to pixels and rays; a [`Plan`] says, before
 //! anything runs, what is done and skipped for a mesh, and why.
 //!
@@ -28,23 +28,28 @@ mod view;
 
 pub use camera::{Camera, Projection};
 pub use error::SceneError;
-pub use file::{CameraSpec, NodeRange, SceneFile, TransferSource, UnitDistance};
+pub use file::{CameraSpec, FieldSpec, NodeRange, SceneFile, TransferSource, UnitDistance};
 pub use method::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Target, UnknownName, parse_name,
 };
 pub use plan::{Device, Plan, Skips};
 pub use view::View;
 
+use glam::DVec3;
 use tetlux_mesh::ScalarField;
-use tetlux_optics::transfer::TransferFunction;
+use tetlux_optics::Light;
 
 /// Everything about a picture but the mesh.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// The scalar that is classified.
+    /// The scalar that is classified; the first of two.
     pub scalar: ScalarField,
-    /// Luminance and opacity over the scalar.
-    pub transfer: TransferFunction,
+    /// The second scalar, where the classification takes two: another field, or the magnitude of the gradient.
+    pub second: Option<ScalarField>,
+    /// Luminance and opacity over the scalars.
+    pub classification: tetlux_optics::Classification,
+    /// Light by the gradient, and silhouettes.
+    pub lighting: Option<Lighting>,
     /// World length over which an opacity of 1 is an optical depth of 1: extinction = opacity / unit distance.
     pub unit_distance: f64,
     /// Where the eye is.
@@ -55,4 +60,21 @@ pub struct Scene {
     pub background: [f32; 3],
     /// How to render, and to what error.
     pub method: Method,
+}
+
+/// A light and the normals it needs.
+#[derive(Debug, Clone)]
+pub struct Lighting {
+    /// The light.
+    pub light: Light,
+    /// The gradient of the first scalar at every point of the mesh, per world length; linear in each cell.
+    pub gradients: Vec<DVec3>,
+}
+
+impl Scene {
+    /// The luminance, if it is the same wherever something is seen: then the order of cells does not matter.
+    pub fn single_luminance(&self) -> Option<[f64; 3]> {
+        let shaded = self.lighting.as_ref().is_some_and(|lighting| lighting.light.shades());
+        if shaded { None } else { self.classification.single_luminance() }
+    }
 }

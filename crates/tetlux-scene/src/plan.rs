@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::TetMesh;
+use tetlux_optics::widget::Rectangle;
 
 use crate::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError, Target, View,
@@ -69,6 +70,7 @@ impl Plan {
     /// A camera that sees nothing, or a combination of backend, order and device that cannot be.
     pub fn new(scene: &Scene, mesh: &TetMesh, device: Option<&Device>) -> Result<Plan, SceneError> {
         let view = scene.camera.view(scene.size)?;
+        drawable(scene)?;
         let mut warnings = Vec::new();
         if let Some(reason) = scene.method.refusal() {
             return Err(SceneError::Method(reason));
@@ -183,6 +185,19 @@ impl std::fmt::Display for Plan {
     }
 }
 
+/// What no renderer draws yet is refused.
+fn drawable(scene: &Scene) -> Result<(), SceneError> {
+    if scene.classification.is_bivariate() {
+        return Err(SceneError::Method(
+            "no back end draws classification by two fields yet: use one field with a transfer function".into(),
+        ));
+    }
+    if scene.lighting.is_some() {
+        return Err(SceneError::Method("no back end draws light yet: leave out [light]".into()));
+    }
+    Ok(())
+}
+
 fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, String), SceneError> {
     // Formats that every device blends.
     let blends = |d: &Device| d.blends_f32 || method.target != Target::Rgba32f;
@@ -233,7 +248,7 @@ fn choose_target(asked: Target, device: Option<&Device>) -> (Target, String) {
 }
 
 fn choose_order(scene: &Scene, backend: Backend) -> (Order, String) {
-    let one_luminance = scene.transfer.single_luminance().is_some();
+    let one_luminance = scene.single_luminance().is_some();
     match (scene.method.order, backend) {
         (Order::Auto, _) if one_luminance => {
             (Order::None, "there is one luminance throughout, so the order does not matter".into())
@@ -259,15 +274,17 @@ fn visible_cells(scene: &Scene, mesh: &TetMesh, view: &View) -> (Vec<u32>, Skips
     let eye_space: Vec<DVec3> = mesh.points().par_iter().map(|p| view.rotate(p.as_dvec3() + offset)).collect();
     let frustum = view.frustum();
     let ranges = mesh.scalar_ranges(&scene.scalar);
+    let second = scene.second.as_ref().map(|second| mesh.scalar_ranges(second));
     let fates: Vec<Fate> = mesh
         .cells()
         .par_iter()
-        .zip(&ranges)
-        .map(|(cell, &range)| {
+        .enumerate()
+        .map(|(index, cell)| {
             let p = cell.map(|v| eye_space[v as usize]);
-            if range[0].is_nan() {
+            let range = Rectangle { s: ranges[index], g: second.as_ref().map_or([0.0; 2], |second| second[index]) };
+            if range.s[0].is_nan() || range.g[0].is_nan() {
                 Fate::NoData
-            } else if scene.transfer.max_opacity(range) <= 0.0 {
+            } else if !scene.classification.is_visible_over(&range) {
                 Fate::Transparent
             } else if frustum.iter().any(|&(n, c)| p.iter().all(|&q| n.dot(q) + c < 0.0)) {
                 Fate::Outside
@@ -298,6 +315,7 @@ fn is_flat(mesh: &TetMesh, cell: &[u32; 4]) -> bool {
 mod tests {
     use tetlux_mesh::procedural::{self, Split};
     use tetlux_mesh::{Component, Field};
+    use tetlux_optics::Classification;
     use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 
     use super::*;
@@ -321,12 +339,16 @@ mod tests {
         let node = |(i, &rgb): (usize, &[f64; 3])| ColorNode { s: i as f64, rgb };
         Scene {
             scalar: mesh.scalar("x", Component::Magnitude).unwrap(),
+            second: None,
             // Transparent up to 2.
-            transfer: TransferFunction::new(
-                color.iter().enumerate().map(node).collect(),
-                vec![OpacityNode { s: 2.0, opacity: 0.0 }, OpacityNode { s: 3.0, opacity: 1.0 }],
-            )
-            .unwrap(),
+            classification: Classification::OneField(
+                TransferFunction::new(
+                    color.iter().enumerate().map(node).collect(),
+                    vec![OpacityNode { s: 2.0, opacity: 0.0 }, OpacityNode { s: 3.0, opacity: 1.0 }],
+                )
+                .unwrap(),
+            ),
+            lighting: None,
             unit_distance: 1.0,
             camera: Camera {
                 position: DVec3::new(4.5, -3.0, 0.5),
@@ -364,9 +386,9 @@ mod tests {
     fn flat_cells_are_skipped() {
         let mesh = row(2);
         let mut scene = scene(&mesh, &[GREY], Method::default());
-        scene.transfer =
-            TransferFunction::new(vec![ColorNode { s: 0.0, rgb: GREY }], vec![OpacityNode { s: 0.0, opacity: 1.0 }])
-                .unwrap();
+        let fog =
+            TransferFunction::new(vec![ColorNode { s: 0.0, rgb: GREY }], vec![OpacityNode { s: 0.0, opacity: 1.0 }]);
+        scene.classification = Classification::OneField(fog.unwrap());
         scene.camera.projection = Projection::Orthographic { parallel_scale: 10.0 };
         let plan = Plan::new(&scene, &mesh, None).unwrap();
         assert_eq!((plan.skips.flat, plan.skips.outside), (1, 0));

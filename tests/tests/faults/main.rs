@@ -45,7 +45,8 @@ fn assert_white(
     field: impl Fn(DVec3) -> f64,
     tolerance: f64,
 ) -> Judged {
-    let opacity: Vec<[f64; 2]> = scene.transfer.opacity_nodes().iter().map(|n| [n.s, n.opacity]).collect();
+    let opacity: Vec<[f64; 2]> =
+        tetlux_tests::transfer_of(scene).opacity_nodes().iter().map(|n| [n.s, n.opacity]).collect();
     let truth = |o, d, start| white_ray(body, &field, &opacity, scene.unit_distance, (o, d, start));
     assert_judged(what, mesh, scene, &Way::ALL, tolerance, truth)
 }

@@ -3,11 +3,12 @@
 use glam::DVec3;
 use tetlux_mesh::TetMesh;
 use tetlux_mesh::procedural::{Split, cuboid};
+use tetlux_optics::Classification;
 use tetlux_optics::transfer::TransferFunction;
 use tetlux_scene::{Camera, Scene};
 use tetlux_tests::{
     FIELD, Random, Way, mesh_of, orthographic, perspective, pixel_error, reference, reference_beside, render, scene,
-    transfer,
+    transfer, transfer_of,
 };
 
 /// Some twenty segments a pixel, each with cuts and weights in single precision.
@@ -108,10 +109,14 @@ const PIXEL_ROUNDING: f64 = 1.5e-5;
 fn sensitivity(mesh: &TetMesh, scene: &Scene, truth: &[[f64; 4]]) -> Vec<f64> {
     let [low, high] = scene.scalar.range;
     let shifted = |shift: f64| {
-        let (color, opacity) = (scene.transfer.color_nodes(), scene.transfer.opacity_nodes());
+        let nodes = transfer_of(scene);
+        let (color, opacity) = (nodes.color_nodes(), nodes.opacity_nodes());
         let color: Vec<[f64; 4]> = color.iter().map(|n| [n.s + shift, n.rgb[0], n.rgb[1], n.rgb[2]]).collect();
         let opacity: Vec<[f64; 2]> = opacity.iter().map(|n| [n.s + shift, n.opacity]).collect();
-        reference(mesh, &Scene { transfer: transfer(&color, &opacity), ..scene.clone() })
+        reference(
+            mesh,
+            &Scene { classification: Classification::OneField(transfer(&color, &opacity)), ..scene.clone() },
+        )
     };
     let by_scalars = [-1.0, 1.0].map(|sign| shifted(sign * SCALAR_ROUNDING * (high - low)));
     let p = PIXEL_ROUNDING;

@@ -110,4 +110,34 @@ proptest! {
             prop_assert!(largest >= bound - 0.9, "{largest} {bound}");
         }
     }
+
+    #[test]
+    fn nothing_is_seen_where_a_rectangle_is_skipped(
+        widget in any_widget(), corner in prop::array::uniform2(-9.0..9.0), size in prop::array::uniform2(0.0..2.0),
+        at in prop::array::uniform2(0.0..=1.0_f64),
+    ) {
+        let range = Rectangle { s: [corner[0], corner[0] + size[0]], g: [corner[1], corner[1] + size[1]] };
+        let point = [corner[0] + at[0] * size[0], corner[1] + at[1] * size[1]];
+        if !widget.is_visible_over(&range) {
+            let tail = if matches!(widget.shape(), Shape::Gaussian { .. }) { GAUSSIAN_TAIL } else { 0.0 };
+            // One rounding of the exponent's argument of up to 28.
+            prop_assert!(widget.opacity(point) <= tail * widget.max_opacity() * (1.0 + 1e-13));
+        } else if matches!(widget.shape(), Shape::Gaussian { .. }) && widget.support().is_none() {
+            // And where it is not skipped there is something.
+            prop_assert!(widget.max_opacity_over(&range) >= GAUSSIAN_TAIL * widget.max_opacity() * (1.0 - 1e-13));
+        }
+    }
+
+    #[test]
+    fn other_units_show_the_same(
+        widget in any_widget(), point in prop::array::uniform2(-2.0..2.0_f64),
+        origin in prop::array::uniform2(-5.0..5.0), scale in prop::array::uniform2(0.1..10.0_f64),
+    ) {
+        let moved = [0, 1].map(|axis| origin[axis] + point[axis] * scale[axis]);
+        // Not at the rim of a support, where rounding decides.
+        let rim = [0.5_f64, -0.5].iter().any(|edge: &f64| (point[0] - edge).abs() < 1e-9) || (point[1] - 0.25).abs() < 1e-9;
+        // Slopes of up to 20 a unit of the 1e-15 by which points and phases are rounded, scaled by up to 100.
+        let close = (widget.mapped(origin, scale).opacity(moved) - widget.opacity(point)).abs() < 1e-11;
+        prop_assert!(rim || close);
+    }
 }

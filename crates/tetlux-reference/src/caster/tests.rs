@@ -1,4 +1,5 @@
 //! Rays through meshes of known shape and light.
 
+mod bivariate;
 mod geometry;
 mod radiance;

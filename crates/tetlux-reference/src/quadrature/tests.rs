@@ -2,19 +2,25 @@
 
 use super::*;
 use crate::testing::transfer;
-use tetlux_optics::{ColorNode, OpacityNode};
+use crate::walk::Values;
+use tetlux_optics::{Classification, ColorNode, OpacityNode, TransferFunction};
 
-fn along(transfer: &TransferFunction, tolerance: f64, segments: &[Segment], extinction: f64) -> Gathered {
-    Integrator::new(transfer, tolerance).integrate(segments, extinction, &mut Workspace::default())
+fn along(classification: &Classification, tolerance: f64, segments: &[Segment], extinction: f64) -> Gathered {
+    let definition = Definition::new(classification, None);
+    Integrator::new(definition, tolerance).integrate(segments, extinction, Sight::default(), &mut Workspace::default())
+}
+
+fn one(scalar: f64) -> Values {
+    [scalar, 0.0, 0.0, 0.0, 0.0]
 }
 
 fn unit(s_0: f64, s_1: f64) -> Segment {
-    Segment { t: [0.0, 1.0], scalar: [s_0, s_1] }
+    Segment { t: [0.0, 1.0], values: [one(s_0), one(s_1)] }
 }
 
 /// A case of the reference file: functions, segment, expected optical depth and colour.
 struct Case {
-    transfer: TransferFunction,
+    transfer: Classification,
     segment: Segment,
     length: f64,
     optical_depth: f64,
@@ -37,11 +43,13 @@ fn cases() -> Vec<Case> {
         let color = |(i, &s): (usize, &f64)| ColorNode { s, rgb: triple(&case["L"][i]) };
         let opacity = |(i, &s): (usize, &f64)| OpacityNode { s, opacity: number(&case["tau"][i]) };
         Case {
-            transfer: TransferFunction::new(
-                s.iter().enumerate().map(color).collect(),
-                s.iter().enumerate().map(opacity).collect(),
-            )
-            .unwrap(),
+            transfer: Classification::OneField(
+                TransferFunction::new(
+                    s.iter().enumerate().map(color).collect(),
+                    s.iter().enumerate().map(opacity).collect(),
+                )
+                .unwrap(),
+            ),
             segment: unit(number(&case["s_f"]), number(&case["s_b"])),
             length: number(&case["length"]),
             optical_depth: number(&case["optical_depth"]),
@@ -127,7 +135,7 @@ fn overlapping_segments_add() {
     // Opacity s, luminance s, both constant along each segment: 1 on [0, 2] and 3 on [1, 4]. On [1, 2] the extinction
     // is 4 and the luminance (1*1 + 3*3)/4 = 2.5.
     let identity = transfer(&[[0.0, 0.0], [4.0, 4.0]], &[[0.0, 0.0], [4.0, 4.0]]);
-    let segments = [Segment { t: [0.0, 2.0], scalar: [1.0; 2] }, Segment { t: [1.0, 4.0], scalar: [3.0; 2] }];
+    let segments = [Segment { t: [0.0, 2.0], values: [one(1.0); 2] }, Segment { t: [1.0, 4.0], values: [one(3.0); 2] }];
     let got = along(&identity, 1e-10, &segments, 0.25);
     let alpha = |depth: f64| -(-depth).exp_m1();
     let expected = alpha(0.25) + (-0.25_f64).exp() * (2.5 * alpha(1.0) + (-1.0_f64).exp() * 3.0 * alpha(1.5));
@@ -138,7 +146,10 @@ fn overlapping_segments_add() {
 #[test]
 fn a_gap_is_clear_and_an_end_on_a_control_point_is_no_trouble() {
     let tent = transfer(&[[0.0, 0.0], [1.0, 2.0], [2.0, 0.0]], &[[0.0, 1.0]]);
-    let segments = [Segment { t: [0.0, 1.0], scalar: [0.0, 1.0] }, Segment { t: [3.0, 4.0], scalar: [1.0, 2.0] }];
+    let segments = [
+        Segment { t: [0.0, 1.0], values: [one(0.0), one(1.0)] },
+        Segment { t: [3.0, 4.0], values: [one(1.0), one(2.0)] },
+    ];
     assert!((along(&tent, 1e-10, &segments, 1.0).optical_depth - 2.0).abs() < ROUNDING);
     // Outside the nodes the function is constant, here 0: nothing to do but to look once.
     let outside = along(&tent, 1e-10, &[unit(2.0, 5.0)], 1.0);
