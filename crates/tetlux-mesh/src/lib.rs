@@ -31,4 +31,4 @@ pub use assemble::{Assembly, coincident};
 pub use error::MeshError;
 pub use field::{Component, Field, Location, ScalarField};
 pub use mesh::{FACES, NONE, TetMesh};
-pub use report::Report;
+pub use report::{Check, Report};
