@@ -4,10 +4,9 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use serde::Serialize;
-use tetlux_ingest::read;
-use tetlux_mesh::Component;
+use tetlux_mesh::{Check, Component};
 
-use crate::mesh_args::{MeshArgs, split_of};
+use crate::mesh_args::MeshArgs;
 use crate::progress;
 use crate::report::write_json;
 
@@ -30,8 +29,9 @@ pub(crate) struct Args {
 #[derive(Serialize)]
 struct Info {
     file: String,
-    cells_by_type: Vec<(&'static str, usize)>,
+    cells_by_type: Vec<(String, u64)>,
     notes: Vec<String>,
+    cache: String,
     points: usize,
     tetrahedra: usize,
     bounds: [[f64; 3]; 2],
@@ -41,8 +41,16 @@ struct Info {
     volume: f64,
     components: usize,
     boundary_faces: usize,
+    checks: Vec<Checked>,
     faults: Vec<String>,
     fields: Vec<FieldInfo>,
+}
+
+#[derive(Serialize)]
+struct Checked {
+    name: &'static str,
+    count: usize,
+    meaning: &'static str,
 }
 
 #[derive(Serialize)]
@@ -56,11 +64,9 @@ struct FieldInfo {
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let options = args.mesh.options(args.mesh.solution.clone());
-    let info = progress::during("reading", || -> Result<Info> {
-        let mixed = read(&args.file, &options)?;
-        let (cells_by_type, notes) = (mixed.cell_counts(), mixed.notes.clone());
-        let mesh = mixed.tetrahedralize(split_of(args.mesh.split))?;
+    let loaded = args.mesh.load(&args.file, args.mesh.solution.clone(), args.mesh.split)?;
+    let info = progress::during("looking at the mesh", || {
+        let mesh = loaded.mesh;
         let report = mesh.validate();
         let fields = mesh.fields().iter().map(|field| {
             let components = (0..field.components).map(Component::Index).filter(|_| field.components > 1);
@@ -72,10 +78,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
                 not_finite: field.values.iter().filter(|v| !v.is_finite()).count(),
             }
         });
-        Ok(Info {
+        Info {
             file: args.file.display().to_string(),
-            cells_by_type,
-            notes,
+            cells_by_type: loaded.cell_counts,
+            notes: loaded.notes,
+            cache: loaded.outcome.to_string(),
             points: report.points,
             tetrahedra: report.cells,
             bounds: report.bounds,
@@ -85,10 +92,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             volume: report.volume,
             components: report.components,
             boundary_faces: report.boundary_faces,
+            checks: report.checks().map(|Check { name, count, meaning }| Checked { name, count, meaning }).into(),
             faults: report.faults(),
             fields: fields.collect(),
-        })
-    })?;
+        }
+    });
     info.print();
     if let Some(path) = &args.json {
         write_json(path, &info)?;
@@ -137,11 +145,12 @@ impl Info {
         for note in &self.notes {
             row("note", note.clone());
         }
-        if self.faults.is_empty() {
-            row("faults", "none".into());
+        row("mesh cache", self.cache.clone());
+        say!("");
+        say!("{:<20} {:>9}  what it means", "checked", "found");
+        for Checked { name, count, meaning } in &self.checks {
+            say!("{name:<20} {count:>9}  {meaning}");
         }
-        for fault in &self.faults {
-            row("fault", fault.clone());
-        }
+        row("faults", if self.faults.is_empty() { "none".into() } else { format!("of {} kinds", self.faults.len()) });
     }
 }

@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use tetlux_ingest::{TetMesh, read_tet_mesh};
+use tetlux_ingest::{CacheOutcome, TetMesh};
 use tetlux_mesh::procedural;
 use tetlux_scene::{
     Backend, CellProjection, Classification, FieldSpec, Integrator, Interpolation, Order, Projection, Scene, SceneFile,
     Target, TransferSource, UnitDistance,
 };
 
-use crate::mesh_args::{MeshArgs, split_of};
+use crate::mesh_args::MeshArgs;
 use crate::progress;
 
 /// Flags override the scene file.
@@ -117,17 +117,25 @@ impl SceneArgs {
         self.override_scene(&mut file)?;
         let mesh_path = mesh.map(Path::to_path_buf).or(file.mesh.clone());
         let mesh = match mesh_path {
-            None if path.is_none() => progress::during("making the built-in mesh", || {
-                let wing = procedural::wing(BUILT_IN_SEED, BUILT_IN_CELLS);
-                TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])
-            })?,
+            None if path.is_none() => {
+                if let Some(flag) = self.file.of_a_file() {
+                    bail!("{flag} is for a mesh file, and none is named: name one, or leave the flag out");
+                }
+                progress::during("making the built-in mesh", || {
+                    let wing = procedural::wing(BUILT_IN_SEED, BUILT_IN_CELLS);
+                    TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])
+                })?
+            }
             None => bail!(
                 "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" under [mesh]",
                 file.name
             ),
             Some(path) => {
-                let options = self.file.options(file.solution.clone());
-                progress::during("reading the mesh", || read_tet_mesh(&path, &options, split_of(file.split)))?
+                let loaded = self.file.load(&path, file.solution.clone(), file.split)?;
+                if !matches!(loaded.outcome, CacheOutcome::Off | CacheOutcome::Small) {
+                    say!("mesh cache: {}", loaded.outcome);
+                }
+                loaded.mesh
             }
         };
         if mesh.fields().is_empty() {

@@ -4,6 +4,7 @@
 mod output;
 
 mod build_tables;
+mod cache;
 mod compare;
 mod info;
 mod input;
@@ -39,6 +40,9 @@ enum Command {
     /// Say what a mesh file holds, and what is wrong with it
     #[command(after_help = info::EXAMPLES)]
     Info(info::Args),
+    /// List the meshes that are kept between runs, or remove them
+    #[command(after_help = cache::EXAMPLES)]
+    Cache(cache::Args),
     /// Run format, lints, all tests and the documentation; installs a Vulkan driver on Debian if there is none
     Test,
 }
@@ -49,6 +53,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
         Command::BuildTables(args) => build_tables::run(&args),
         Command::Info(args) => info::run(&args).map(|()| true),
+        Command::Cache(args) => cache::run(&args).map(|()| true),
         Command::Test => test::run().map(|()| true),
     };
     match result {

@@ -1,8 +1,11 @@
 //! What a mesh file's path alone does not say, as flags.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use tetlux_ingest::{Expression, ReadOptions, Split};
+use anyhow::Result;
+use tetlux_ingest::{Cache, Expression, Loaded, ReadOptions, Split, read_cached};
+
+use crate::progress;
 
 #[derive(clap::Args, Default)]
 #[command(next_help_heading = "Mesh file")]
@@ -22,17 +25,36 @@ pub(crate) struct MeshArgs {
     /// Field on what fills a surface, such as wave=sin(4*x)*y; may be repeated
     #[arg(long, value_name = "NAME=EXPRESSION", value_parser = parse_expression)]
     expression: Vec<(String, Expression)>,
+    /// Read the file anew, and neither use nor store its mesh in the cache (see `cargo xtask cache`)
+    #[arg(long)]
+    no_cache: bool,
 }
 
 impl MeshArgs {
-    /// The options of a file read with this solution.
-    pub(crate) fn options(&self, solution: Option<PathBuf>) -> ReadOptions {
-        ReadOptions { solution, time: self.time, cell_size: self.cell_size, expressions: self.expression.clone() }
+    /// The mesh of a file, from the cache or read with this solution and split.
+    pub(crate) fn load(&self, path: &Path, solution: Option<PathBuf>, split: Option<u32>) -> Result<Loaded> {
+        let MeshArgs { time, cell_size, .. } = *self;
+        let options = ReadOptions { solution, time, cell_size, expressions: self.expression.clone() };
+        let cache = if self.no_cache { None } else { Cache::of_user() };
+        let read = || read_cached(path, &options, split_of(split), cache.as_ref());
+        Ok(progress::during("reading the mesh", read)?)
+    }
+
+    /// The first of the flags that only a file can follow, if any is given.
+    pub(crate) fn of_a_file(&self) -> Option<&'static str> {
+        let flags = [
+            (self.solution.is_some(), "--solution"),
+            (self.split.is_some(), "--split"),
+            (self.time.is_some(), "--time"),
+            (self.cell_size.is_some(), "--cell-size"),
+            (!self.expression.is_empty(), "--expression"),
+        ];
+        flags.into_iter().find(|(given, _)| *given).map(|(_, flag)| flag)
     }
 }
 
 /// The split that makes 5 or 6 tetrahedra of a hexahedron.
-pub(crate) fn split_of(tetrahedra: Option<u32>) -> Split {
+fn split_of(tetrahedra: Option<u32>) -> Split {
     if tetrahedra == Some(5) { Split::Five } else { Split::Six }
 }
 

@@ -11,7 +11,13 @@ use tetlux_image::{Image, read_exr, write_exr};
 
 /// Runs the program in a folder.
 fn run(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xtask")).args(args).current_dir(folder).output().unwrap()
+    // A cache of its own, in a folder that is not there unless something is stored.
+    run_with_cache(folder, &folder.join("cache"), args)
+}
+
+fn run_with_cache(folder: &Path, cache: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
+    command.args(args).current_dir(folder).env("TETLUX_CACHE_DIR", cache).output().unwrap()
 }
 
 fn stdout(output: &Output) -> String {
@@ -232,7 +238,7 @@ fn a_folder_that_cannot_be_made_is_named() {
 #[test]
 fn every_command_has_help_with_examples() {
     let folder = tempfile::tempdir().unwrap();
-    for command in ["render", "compare", "info"] {
+    for command in ["render", "compare", "info", "cache"] {
         let output = run(folder.path(), &[command, "--help"]);
         assert!(output.status.success());
         let text = stdout(&output);
@@ -260,6 +266,84 @@ fn info_tells_what_a_mesh_holds() {
     // Eight faces, two of them shared.
     assert_eq!((&json["boundary_faces"], &json["components"]), (&serde_json::json!(6), &serde_json::json!(1)));
     assert_eq!(json["fields"][1]["ranges"][0], serde_json::json!([0.0, 5.0]));
+}
+
+#[test]
+fn info_tells_what_was_checked_and_what_was_found() {
+    let folder = folder();
+    // The first tetrahedron inside out, and a point that coincides with another.
+    let faulty = VTU.replace("0 1 2 3  1 2 3 4", "1 0 2 3  1 2 3 4").replace("\"5\"", "\"6\"");
+    let faulty = faulty.replace("1 1 1\n", "1 1 1  0 0 0\n");
+    let faulty = faulty.replace(">0 1 2 3 4<", ">0 1 2 3 4 0<").replace("0 0 0 1</", "0 0 0 1 3 4 0</");
+    fs::write(folder.path().join("faulty.vtu"), faulty).unwrap();
+    for (name, merged, inverted) in [("mesh.vtu", 0, 0), ("faulty.vtu", 1, 1)] {
+        let output = run(folder.path(), &["info", name, "--json", "mesh.json"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let text = stdout(&output);
+        let json = json(&folder.path().join("mesh.json"));
+        let counts =
+            [("merged points", merged), ("inverted cells", inverted), ("flat cells", 0), ("split both ways", 0)];
+        for (check, count) in counts {
+            let line = text.lines().find(|line| line.starts_with(check)).unwrap();
+            assert_eq!(line[check.len()..].split_whitespace().next(), Some(count.to_string().as_str()), "{text}");
+            let told = json["checks"].as_array().unwrap().iter().find(|c| c["name"] == check).unwrap();
+            assert_eq!(told["count"], count);
+        }
+        assert_eq!(json["faults"].as_array().unwrap().len(), merged + inverted);
+    }
+}
+
+#[test]
+fn large_meshes_are_kept_listed_and_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    // 27^3 hexahedra, 118 098 tetrahedra.
+    let values: String = (0..28 * 28 * 28).map(|i| format!("{} ", i % 7)).collect();
+    let grid = format!(
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 28 28 28\nORIGIN 0 0 0\n\
+         SPACING 1 1 1\nPOINT_DATA 21952\nSCALARS f float\nLOOKUP_TABLE default\n{values}\n"
+    );
+    fs::write(folder.path().join("grid.vtk"), grid).unwrap();
+    let info = |args: &[&str], cache: &str| {
+        let output = run(folder.path(), &[&["info", "grid.vtk", "--json", "i.json"], args].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        let mut json = json(&folder.path().join("i.json"));
+        assert_eq!(json["cache"], cache);
+        json["cache"] = serde_json::Value::Null;
+        (json, stdout(&output).replace(&format!("mesh cache       {cache}\n"), ""))
+    };
+    let without = info(&["--no-cache"], "not used");
+    assert!(!folder.path().join("cache").exists());
+    let (stored, used) = (info(&[], "stored"), info(&[], "used"));
+    assert!(stored == without && used == without, "all figures are the same");
+    let listing = stdout(&run(folder.path(), &["cache"]));
+    assert!(listing.contains("118098") && listing.contains("grid.vtk") && listing.contains("1 meshes"), "{listing}");
+    assert!(!listing.contains("stale"), "{listing}");
+    fs::write(folder.path().join("grid.vtk"), "another").unwrap();
+    assert!(stdout(&run(folder.path(), &["cache"])).contains("stale"));
+    assert!(stdout(&run(folder.path(), &["cache", "--clear"])).contains("1 meshes removed"));
+    assert!(files(&folder.path().join("cache")).is_empty());
+    // A cache that cannot be: said, and rendered all the same.
+    let folder = self::folder();
+    fs::write(folder.path().join("file"), "kept").unwrap();
+    let blocked = folder.path().join("file").join("cache");
+    let output = run_with_cache(folder.path(), &blocked, &["render", "scene.toml"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_fails(&run_with_cache(folder.path(), &blocked, &["cache"]), &["file", "cannot be listed"]);
+}
+
+#[test]
+fn flags_that_a_file_has_no_use_for_are_refused() {
+    let folder = folder();
+    for (flag, value, part) in [
+        ("--cell-size", "0.1", "a cell size"),
+        ("--expression", "f=x", "a field by an expression"),
+        ("--solution", "q.bin", "a solution"),
+        ("--time", "0", "time step 0"),
+    ] {
+        assert_fails(&run(folder.path(), &["info", "mesh.vtu", flag, value]), &[part, "mesh.vtu"]);
+        assert_fails(&run(folder.path(), &["render", "scene.toml", flag, value]), &[part, "mesh.vtu"]);
+        assert_fails(&run(folder.path(), &["render", flag, value]), &[flag, "no"]);
+    }
 }
 
 #[test]

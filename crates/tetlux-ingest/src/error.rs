@@ -141,6 +141,18 @@ pub enum IngestError {
         /// The grid's.
         expected: [u32; 3],
     },
+    /// Something was asked for that files of this format do not have.
+    #[error("{}: {asked} is asked for, but {format} has none; leave it out: {owners}", path.display())]
+    Unused {
+        /// The file.
+        path: PathBuf,
+        /// What was asked for.
+        asked: &'static str,
+        /// What the file is.
+        format: &'static str,
+        /// Which files have such a thing.
+        owners: &'static str,
+    },
     /// A time step that the file does not have.
     #[error(
         "{}: time step {step} is out of range: the file has {count}, numbered from 0; name one of them, or none for \

@@ -21,6 +21,8 @@ const DEEPEST: usize = 64;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Expression {
+    /// As it was given.
+    text: String,
     /// Steps in postfix order.
     steps: Vec<Step>,
 }
@@ -72,7 +74,12 @@ impl Expression {
         if parser.peek().is_some() {
             return Err(parser.error("an operator or the end must be here"));
         }
-        Ok(Expression { steps: parser.steps })
+        Ok(Expression { text: text.into(), steps: parser.steps })
+    }
+
+    /// The formula as it was given.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// The value at a point.

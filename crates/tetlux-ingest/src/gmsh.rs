@@ -203,7 +203,7 @@ impl<'a> File<'a> {
         let flat = self.elements.flat;
         let note = format!("elements of points, lines or surfaces, without volume: {flat}, left out");
         mesh.notes.extend((flat > 0).then_some(note));
-        if self.views.is_empty() {
+        if self.views.is_empty() && time.is_none() {
             return Ok(self.mesh);
         }
         let tags = Tags::new(tags).map_err(|tag| {

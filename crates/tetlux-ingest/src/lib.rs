@@ -9,7 +9,7 @@
 //! netCDF's classic formats), and PLOT3D (whole 3-D grids and their solutions, however they are written).
 //!
 //! A closed [`Surface`] (OBJ, STL) is filled with tetrahedra by [`fill`], by `read` too, with the distance to it and
-//! any [`Expression`] of the coordinates as fields.
+//! any [`Expression`] of the coordinates as fields. [`read_cached`] keeps large meshes between runs.
 //!
 //! ```
 //! use tetlux_ingest::{ReadOptions, Split, read};
@@ -35,6 +35,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cache;
 mod cell_type;
 #[cfg(test)]
 mod damage;
@@ -55,6 +56,7 @@ mod vtk_legacy;
 mod vtk_xml;
 mod words;
 
+pub use cache::{Cache, CacheEntry, CacheOutcome, Loaded, Miss, read_cached};
 pub use error::{IngestError, Place};
 pub use expression::{Expression, ExpressionError};
 pub use mixed::{MixedCells, MixedMesh, StructuredGrid};

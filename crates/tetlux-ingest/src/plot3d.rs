@@ -20,7 +20,7 @@ use glam::DVec3;
 use layout::{Candidates, Contents, Encoding, Layout, candidates};
 use values::Values;
 
-use crate::source::{Source, numbers};
+use crate::source::{Files, Source, numbers};
 use crate::{IngestError, MixedMesh, Place, StructuredGrid};
 
 const REMEDY: &str =
@@ -60,7 +60,7 @@ fn grid_choice(bytes: &[u8], found: &Candidates) -> Option<Choice> {
 }
 
 /// Reads a grid and, if it is given, its solution or function file.
-pub(crate) fn read(source: Source, solution: Option<&Path>) -> Result<MixedMesh, IngestError> {
+pub(crate) fn read(source: Source, solution: Option<&Path>, files: &mut Files) -> Result<MixedMesh, IngestError> {
     let found = candidates(&source.bytes, Contents::Grid);
     let Some(Choice { layout, rest }) = grid_choice(&source.bytes, &found) else {
         return Err(no_grid(&source, &found));
@@ -90,7 +90,7 @@ pub(crate) fn read(source: Source, solution: Option<&Path>) -> Result<MixedMesh,
     drop(source);
     note_blanked(&mut mesh);
     if let Some(path) = solution {
-        solution::add(&mut mesh, &Source::open(path)?, &layout)?;
+        solution::add(&mut mesh, &files.open(path)?, &layout)?;
     }
     Ok(mesh)
 }

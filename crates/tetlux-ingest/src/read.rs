@@ -6,11 +6,9 @@ use tetlux_mesh::TetMesh;
 use tetlux_mesh::procedural::Split;
 
 use crate::cell_type::{CellType, POLYHEDRON, QUADRATIC_PYRAMID};
-use crate::source::Source;
+use crate::source::{Files, Source};
 use crate::tetrahedralize::{PYRAMID_WITH_BASE_POINT, faces_that_differ, is_quadratic};
-use crate::{
-    Expression, IngestError, MixedMesh, Place, exodus, gmsh, plot3d, stuffing, surface, tetgen, vtk_legacy, vtk_xml,
-};
+use crate::{Expression, IngestError, MixedMesh, exodus, gmsh, plot3d, stuffing, surface, tetgen, vtk_legacy, vtk_xml};
 
 /// What a path alone does not say.
 #[derive(Debug, Clone, Default)]
@@ -33,39 +31,109 @@ const PLOT3D_EXTENSIONS: [&str; 7] = ["xyz", "bin", "x", "p3d", "p3dbin", "g", "
 const VTK_XML_EXTENSIONS: [&str; 11] =
     ["vtu", "vts", "vtr", "vti", "pvtu", "pvts", "pvtr", "pvti", "vtm", "vtmb", "pvd"];
 
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    VtkXml,
+    VtkLegacy,
+    Gmsh,
+    Exodus,
+    Surface,
+    Plot3d,
+    TetGen,
+}
+
+impl Format {
+    /// Found out from the content, and from the extension only where that fails.
+    fn of(source: &Source, options: &ReadOptions) -> Option<Format> {
+        let bytes = &source.bytes;
+        let extension = source.path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let extension = extension.as_str();
+        Some(if vtk_xml::recognizes(bytes) {
+            Format::VtkXml
+        } else if vtk_legacy::recognizes(bytes) {
+            Format::VtkLegacy
+        } else if gmsh::recognizes(bytes) {
+            Format::Gmsh
+        } else if exodus::recognizes(bytes) {
+            Format::Exodus
+        } else if surface::recognizes(bytes) || surface::has_extension(extension) {
+            Format::Surface
+        } else if plot3d::recognizes(bytes) || PLOT3D_EXTENSIONS.contains(&extension) {
+            Format::Plot3d
+        } else if VTK_XML_EXTENSIONS.contains(&extension) {
+            Format::VtkXml
+        } else if extension == "vtk" {
+            Format::VtkLegacy
+        } else if extension == "msh" {
+            Format::Gmsh
+        } else if tetgen::recognizes(extension) {
+            Format::TetGen
+        } else if options.solution.is_some() {
+            Format::Plot3d
+        } else {
+            return None;
+        })
+    }
+
+    /// What a message calls it.
+    fn name(self) -> &'static str {
+        match self {
+            Format::VtkXml => "a VTK XML file",
+            Format::VtkLegacy => "a legacy VTK file",
+            Format::Gmsh => "a Gmsh file",
+            Format::Exodus => "an Exodus II file",
+            Format::Surface => "a surface",
+            Format::Plot3d => "a PLOT3D grid",
+            Format::TetGen => "a TetGen mesh",
+        }
+    }
+
+    /// Fails if something is asked for that such a file does not have: it would be passed over in silence.
+    fn refuse_unused(self, path: &Path, options: &ReadOptions) -> Result<(), IngestError> {
+        let ReadOptions { solution, time, cell_size, expressions } = options;
+        let timed = matches!(self, Format::VtkXml | Format::Gmsh | Format::Exodus);
+        let (surface, plot3d) = (self == Format::Surface, self == Format::Plot3d);
+        let surfaces = "surfaces that are filled (OBJ, STL) have one";
+        for (unused, asked, owners) in [
+            (solution.is_some() && !plot3d, "a solution", "PLOT3D grids have one"),
+            (time.is_some() && !timed, "a time step", "Exodus II, Gmsh and VTK XML files can have them"),
+            (cell_size.is_some() && !surface, "a cell size", surfaces),
+            (!expressions.is_empty() && !surface, "a field by an expression", surfaces),
+        ] {
+            if unused {
+                return Err(IngestError::Unused { path: path.into(), asked, format: self.name(), owners });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Reads a file: its format is found out from its content, and from its extension only where that fails.
+///
+/// # Errors
+/// What is wrong with the file; [`IngestError::Unused`] if an option is set that files of its format do not have.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<MixedMesh, IngestError> {
-    let source = Source::open(path)?;
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let mut mesh = if vtk_xml::recognizes(&source.bytes) {
-        refuse_solution(&source, options)?;
-        vtk_xml::read(source, options.time)?
-    } else if vtk_legacy::recognizes(&source.bytes) {
-        vtk_legacy::read(source)?
-    } else if gmsh::recognizes(&source.bytes) {
-        gmsh::read(source, options.time)?
-    } else if exodus::recognizes(&source.bytes) {
-        refuse_solution(&source, options)?;
-        exodus::read(&source, options.time)?
-    } else if surface::recognizes(&source.bytes) || surface::has_extension(&extension) {
-        stuffing::read(&source, options.cell_size, &options.expressions)?
-    } else if plot3d::recognizes(&source.bytes)
-        || options.solution.is_some()
-        || PLOT3D_EXTENSIONS.contains(&extension.as_str())
-    {
-        plot3d::read(source, options.solution.as_deref())?
-    } else if VTK_XML_EXTENSIONS.contains(&extension.as_str()) {
-        vtk_xml::read(source, options.time)?
-    } else if extension == "vtk" {
-        vtk_legacy::read(source)?
-    } else if extension == "msh" {
-        gmsh::read(source, options.time)?
-    } else if tetgen::recognizes(&extension) {
-        tetgen::read(source)?
-    } else {
+    read_files(path, options, &mut Files::default())
+}
+
+/// As [`read`]; all files are opened through `files`.
+pub(crate) fn read_files(path: &Path, options: &ReadOptions, files: &mut Files) -> Result<MixedMesh, IngestError> {
+    let source = files.open(path)?;
+    let Some(format) = Format::of(&source, options) else {
         let start = &source.bytes[..source.bytes.len().min(24)];
         let found = format!("\"{}\"", start.escape_ascii());
         return Err(IngestError::UnknownFormat { path: path.into(), found });
+    };
+    format.refuse_unused(path, options)?;
+    let mut mesh = match format {
+        Format::VtkXml => vtk_xml::read(source, options.time, files)?,
+        Format::VtkLegacy => vtk_legacy::read(source)?,
+        Format::Gmsh => gmsh::read(source, options.time)?,
+        Format::Exodus => exodus::read(&source, options.time)?,
+        Format::Surface => stuffing::read(&source, options.cell_size, &options.expressions)?,
+        Format::Plot3d => plot3d::read(source, options.solution.as_deref(), files)?,
+        Format::TetGen => tetgen::read(source, files)?,
     };
     mesh.check()?;
     note_cells(&mut mesh);
@@ -75,13 +143,6 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<MixedMesh, IngestError
 /// Reads a file and makes tetrahedra of its cells: [`read`] and [`MixedMesh::tetrahedralize`].
 pub fn read_tet_mesh(path: &Path, options: &ReadOptions, split: Split) -> Result<TetMesh, IngestError> {
     read(path, options)?.tetrahedralize(split)
-}
-
-/// A solution belongs to a PLOT3D grid, and to no file of another format.
-fn refuse_solution(source: &Source, options: &ReadOptions) -> Result<(), IngestError> {
-    let Some(solution) = &options.solution else { return Ok(()) };
-    let remedy = "leave the solution out: only PLOT3D grids have one";
-    Err(source.malformed(Place::File, "a solution for a file of another format", solution.display(), remedy))
 }
 
 /// Notes of what becomes of cells that are no plain linear ones.

@@ -3,6 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use tetlux_mesh::cache::SourceFile;
+
+use crate::cache::stamp;
 use crate::{IngestError, Place};
 
 /// Byte order of the numbers in a file.
@@ -16,6 +19,29 @@ pub(crate) enum ByteOrder {
 pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) bytes: Vec<u8>,
+}
+
+/// Opens files, and keeps a record of each if one is wanted.
+#[derive(Default)]
+pub(crate) struct Files {
+    /// `None` if no record is wanted, or a path is no text.
+    pub(crate) record: Option<Vec<SourceFile>>,
+}
+
+impl Files {
+    /// As [`Source::open`].
+    pub(crate) fn open(&mut self, path: &Path) -> Result<Source, IngestError> {
+        // Taken before the content: what changes between the two is found to have changed.
+        let stamp = if self.record.is_some() { stamp(path) } else { None };
+        let source = Source::open(path)?;
+        self.record = self.record.take().and_then(|mut record| {
+            let path = std::path::absolute(path).ok()?.to_str()?.to_owned();
+            let (size, hash) = (source.bytes.len() as u64, blake3::hash(&source.bytes).into());
+            record.push(SourceFile { path, size, stamp: stamp.unwrap_or_default(), hash });
+            Some(record)
+        });
+        Ok(source)
+    }
 }
 
 impl Source {

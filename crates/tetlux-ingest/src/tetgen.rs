@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use tetlux_mesh::{Field, Location};
 
-use crate::source::Source;
+use crate::source::{Files, Source};
 use crate::words::parse;
 use crate::{IngestError, MixedMesh, Place};
 
@@ -21,9 +21,9 @@ pub(crate) fn recognizes(extension: &str) -> bool {
 }
 
 /// Reads either file and the other beside it.
-pub(crate) fn read(source: Source) -> Result<MixedMesh, IngestError> {
+pub(crate) fn read(source: Source, files: &mut Files) -> Result<MixedMesh, IngestError> {
     let is_nodes = source.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("node"));
-    let other = Source::open(&partner(&source.path, if is_nodes { "ele" } else { "node" }))?;
+    let other = files.open(&partner(&source.path, if is_nodes { "ele" } else { "node" }))?;
     let (nodes, elements) = if is_nodes { (source, other) } else { (other, source) };
     let mut mesh = MixedMesh { path: nodes.path.clone(), ..MixedMesh::default() };
     let first = read_nodes(&nodes, &mut mesh)?;

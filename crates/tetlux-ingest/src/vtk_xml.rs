@@ -15,7 +15,7 @@ mod unstructured;
 
 use tetlux_mesh::{Field, Location};
 
-use crate::source::Source;
+use crate::source::{Files, Source};
 use crate::{IngestError, MixedMesh, Place};
 use array::floats;
 use collection::{Contents, Reader};
@@ -31,9 +31,9 @@ pub(crate) fn recognizes(bytes: &[u8]) -> bool {
 
 /// Reads all pieces of a file, and of those it lists, into one mesh; of several time steps the one asked for, counted
 /// from 0, or the last.
-pub(crate) fn read(source: Source, time: Option<usize>) -> Result<MixedMesh, IngestError> {
+pub(crate) fn read(source: Source, time: Option<usize>, files: &mut Files) -> Result<MixedMesh, IngestError> {
     let path = source.path.clone();
-    match Reader::new(&path, time).contents(source, 0)? {
+    match Reader::new(&path, time, files).contents(source, 0)? {
         Contents::Parts(parts) => Ok(join::join(path, parts)),
         Contents::Flat(why) => Err(why),
     }

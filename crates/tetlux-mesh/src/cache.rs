@@ -1,81 +1,142 @@
 //! Assembled meshes as bytes, to be stored and read back faster than they were made.
 //!
-//! A cache is trusted only if magic, schema version and byte order are this program's, the key is the one asked for and
-//! the hash of its content holds; whatever does not match is a reason to make the mesh anew, never an error.
+//! Before the arrays stand magic, schema version, byte order, and a header of its own hash that says what the mesh was
+//! made of; after them their hash. Both ways the arrays pass straight between mesh and file, once. Whatever does not
+//! match is a reason to make the mesh anew, never an error.
 
+use std::io::{self, Read, Write};
+
+use bytemuck::Pod;
 use glam::{DVec3, Vec3};
 
-use crate::{Assembly, Field, Location, TetMesh};
+use crate::{Assembly, Field, Location, NONE, TetMesh};
 
 const MAGIC: [u8; 8] = *b"tetlux-m";
 
-/// Raised whenever the content or its meaning changes.
-const SCHEMA: u32 = 1;
+/// Raised whenever the layout or its meaning changes.
+const SCHEMA: u32 = 2;
 
 /// Written as a number: read back as another where the byte order differs.
 const BYTE_ORDER: u32 = 0x0102_0304;
 
-/// Bytes before the content: magic, schema, byte order, hash of the content.
-const PREAMBLE: usize = 8 + 4 + 4 + 32;
+/// Bytes before the header: magic, schema, byte order, length of the header, hash of the header.
+const PREAMBLE: usize = 8 + 4 + 4 + 8 + HASH;
 
-/// What a mesh was made of: a cache is used only for the same.
-#[derive(Debug, Clone, PartialEq, Eq, bincode::Encode, bincode::Decode)]
-pub struct CacheKey {
-    /// Path of the file.
-    pub path: String,
-    /// Its size in bytes.
-    pub size: u64,
-    /// Hash of its content, and of every other file that belongs to it.
-    pub hash: [u8; 32],
-    /// Whatever else the mesh depends on, as the split of hexahedra.
+/// Bytes of a hash.
+const HASH: usize = 32;
+
+/// Headers are no longer than this, so a damaged length asks for no more.
+const LONGEST_HEADER: usize = 1 << 20;
+
+/// Bytes read and hashed at a time: they stay in the processor's cache between the two.
+const CHUNK: usize = 256 << 10;
+
+/// What a mesh was made of, and what was said of it then.
+#[derive(Debug, Clone, Default, PartialEq, Eq, bincode::Encode, bincode::Decode)]
+pub struct Origin {
+    /// The program and version that made it.
+    pub maker: String,
+    /// Whatever else than the files it depends on, as the split of hexahedra.
     pub options: String,
+    /// Every file that was read, the one that was named first.
+    pub sources: Vec<SourceFile>,
+    /// Cells of each type in the files.
+    pub cell_counts: Vec<(String, u64)>,
+    /// What was passed over, a sentence each.
+    pub notes: Vec<String>,
 }
 
-/// Why a cache is not used.
+/// A file that a mesh was made of.
+#[derive(Debug, Clone, PartialEq, Eq, bincode::Encode, bincode::Decode)]
+pub struct SourceFile {
+    /// Absolute path.
+    pub path: String,
+    /// Size in bytes.
+    pub size: u64,
+    /// What the file system says of its last change; all zero where that cannot be relied on.
+    pub stamp: [i64; 6],
+    /// BLAKE3 hash of its content.
+    pub hash: [u8; HASH],
+}
+
+/// Why stored bytes are not used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum CacheMiss {
     /// Not a cache of tetlux, or one of a machine of the other byte order.
     #[error("it is no mesh cache of this machine")]
     Foreign,
-    /// Of another version of tetlux.
+    /// Of another version of the layout.
     #[error("it was written by another version")]
     Schema,
-    /// Made of another file, or of this file before it changed, or with other options.
-    #[error("its source or options have changed")]
-    Key,
-    /// Cut short or changed.
+    /// Cut short, changed, or not to be read.
     #[error("it is damaged")]
     Damaged,
 }
 
 /// What precedes the arrays.
-#[derive(bincode::Encode, bincode::Decode)]
+#[derive(Debug, bincode::Encode, bincode::Decode)]
 struct Header {
-    key: CacheKey,
-    origin: [f64; 3],
+    origin: Origin,
+    center: [f64; 3],
     assembly: [u64; 9],
     points: u64,
     cells: u64,
     fields: Vec<StoredField>,
 }
 
-#[derive(bincode::Encode, bincode::Decode)]
+#[derive(Debug, bincode::Encode, bincode::Decode)]
 struct StoredField {
     name: String,
     at_points: bool,
     components: u64,
 }
 
-/// Headers are no longer than this, so a damaged length in one asks for no more.
-const LONGEST_HEADER: usize = 1 << 20;
-
 fn config() -> impl bincode::config::Config {
     bincode::config::standard().with_fixed_int_encoding().with_limit::<LONGEST_HEADER>()
 }
 
+impl Origin {
+    /// A hash of all but the stamps: what depends on the mesh alone can be stored under it.
+    pub fn identity(&self) -> [u8; HASH] {
+        let mut same = self.clone();
+        same.sources.iter_mut().for_each(|source| source.stamp = Default::default());
+        let unlimited = bincode::config::standard().with_fixed_int_encoding();
+        // Plain data: encoding into memory cannot fail, and if it did the hash would be that of nothing.
+        *blake3::hash(&bincode::encode_to_vec(same, unlimited).unwrap_or_default()).as_bytes()
+    }
+}
+
 impl TetMesh {
-    /// The mesh as bytes; `None` if its fields' names are too long for a header.
-    pub fn to_cache(&self, key: &CacheKey) -> Option<Vec<u8>> {
+    /// Writes the mesh and what it was made of.
+    ///
+    /// # Errors
+    /// Those of the writer, and [`io::ErrorKind::InvalidInput`] if names and notes together are longer than 1 MiB.
+    pub fn write_cache(&self, origin: &Origin, to: &mut dyn Write) -> io::Result<()> {
+        let header = bincode::encode_to_vec(self.header(origin), config()).ok().filter(|h| h.len() <= LONGEST_HEADER);
+        let header = header.ok_or_else(|| {
+            io::Error::new(io::ErrorKind::InvalidInput, "the names and notes of the mesh are longer than 1 MiB")
+        })?;
+        to.write_all(&MAGIC)?;
+        to.write_all(&SCHEMA.to_ne_bytes())?;
+        to.write_all(&BYTE_ORDER.to_ne_bytes())?;
+        to.write_all(&(header.len() as u64).to_ne_bytes())?;
+        to.write_all(blake3::hash(&header).as_bytes())?;
+        to.write_all(&header)?;
+        let mut hasher = blake3::Hasher::new();
+        let mut put = |bytes: &[u8]| {
+            bytes.chunks(CHUNK).try_for_each(|chunk| {
+                hasher.update(chunk);
+                to.write_all(chunk)
+            })
+        };
+        put(bytemuck::cast_slice(&self.points))?;
+        put(bytemuck::cast_slice(&self.cells))?;
+        put(bytemuck::cast_slice(&self.neighbors))?;
+        self.fields.iter().try_for_each(|field| put(bytemuck::cast_slice(&field.values)))?;
+        to.write_all(hasher.finalize().as_bytes())
+    }
+
+    fn header(&self, origin: &Origin) -> Header {
         let a = &self.assembly;
         let counts = [
             a.points_given,
@@ -93,66 +154,123 @@ impl TetMesh {
             at_points: field.location == Location::Point,
             components: field.components as u64,
         };
-        let header = Header {
-            key: key.clone(),
-            origin: self.origin.to_array(),
+        Header {
+            origin: origin.clone(),
+            center: self.origin.to_array(),
             assembly: counts.map(|n| n as u64),
             points: self.points.len() as u64,
             cells: self.cells.len() as u64,
             fields: self.fields.iter().map(stored).collect(),
-        };
-        let header = bincode::encode_to_vec(header, config()).ok().filter(|h| h.len() < LONGEST_HEADER)?;
-        let mut bytes = Vec::new();
-        bytes.extend_from_slice(&MAGIC);
-        bytes.extend_from_slice(&SCHEMA.to_ne_bytes());
-        bytes.extend_from_slice(&BYTE_ORDER.to_ne_bytes());
-        bytes.resize(PREAMBLE, 0);
-        bytes.extend_from_slice(&header);
-        bytes.extend_from_slice(bytemuck::cast_slice(&self.points));
-        bytes.extend_from_slice(bytemuck::cast_slice(&self.cells));
-        bytes.extend_from_slice(bytemuck::cast_slice(&self.neighbors));
-        for field in &self.fields {
-            bytes.extend_from_slice(bytemuck::cast_slice(&field.values));
         }
-        let hash = blake3::hash(&bytes[PREAMBLE..]);
-        bytes[PREAMBLE - 32..PREAMBLE].copy_from_slice(hash.as_bytes());
-        Some(bytes)
     }
+}
 
-    /// The mesh that [`to_cache`](Self::to_cache) made `bytes` of.
-    pub fn from_cache(bytes: &[u8], key: &CacheKey) -> Result<TetMesh, CacheMiss> {
-        let number = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_ne_bytes);
-        if bytes.len() < PREAMBLE || bytes[..8] != MAGIC || number(12) != Some(BYTE_ORDER) {
+/// A stored mesh of which the header has been read.
+#[derive(Debug)]
+pub struct CacheReader<R> {
+    from: R,
+    header: Header,
+    /// Bytes up to the arrays.
+    start: u64,
+}
+
+impl<R: Read> CacheReader<R> {
+    /// Reads what precedes the arrays.
+    ///
+    /// # Errors
+    /// [`CacheMiss`], if it is not this version's or its hash does not hold.
+    pub fn new(mut from: R) -> Result<Self, CacheMiss> {
+        let mut preamble = [0; PREAMBLE];
+        from.read_exact(&mut preamble).map_err(|_| CacheMiss::Foreign)?;
+        let number = |at: usize| u32::from_ne_bytes([0, 1, 2, 3].map(|i| preamble[at + i]));
+        if preamble[..8] != MAGIC || number(12) != BYTE_ORDER {
             return Err(CacheMiss::Foreign);
         }
-        if number(8) != Some(SCHEMA) {
+        if number(8) != SCHEMA {
             return Err(CacheMiss::Schema);
         }
-        let (hash, content) = bytes[16..].split_at(32);
-        if blake3::hash(content).as_bytes() != hash {
+        let length = u64::from_ne_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(|i| preamble[16 + i]));
+        if length > LONGEST_HEADER as u64 {
             return Err(CacheMiss::Damaged);
         }
-        let (header, length): (Header, usize) =
-            bincode::decode_from_slice(content, config()).map_err(|_| CacheMiss::Damaged)?;
-        if header.key != *key {
-            return Err(CacheMiss::Key);
+        let mut header = vec![0; length as usize];
+        from.read_exact(&mut header).map_err(|_| CacheMiss::Damaged)?;
+        if blake3::hash(&header).as_bytes()[..] != preamble[PREAMBLE - HASH..] {
+            return Err(CacheMiss::Damaged);
         }
-        header.mesh(&content[length..]).ok_or(CacheMiss::Damaged)
+        let (header, read): (Header, usize) =
+            bincode::decode_from_slice(&header, config()).map_err(|_| CacheMiss::Damaged)?;
+        let whole = read as u64 == length;
+        whole.then_some(CacheReader { from, header, start: PREAMBLE as u64 + length }).ok_or(CacheMiss::Damaged)
+    }
+
+    /// What the mesh was made of.
+    pub fn origin(&self) -> &Origin {
+        &self.header.origin
+    }
+
+    /// Tetrahedra of the mesh.
+    pub fn cells(&self) -> u64 {
+        self.header.cells
+    }
+
+    /// Reads the mesh; `length` is that of all the stored bytes, and bounds what memory is asked for.
+    ///
+    /// # Errors
+    /// [`CacheMiss::Damaged`], if lengths, hash or indices do not fit.
+    pub fn mesh(self, length: u64) -> Result<TetMesh, CacheMiss> {
+        let CacheReader { from, header, start } = self;
+        let left = length.checked_sub(start + HASH as u64).ok_or(CacheMiss::Damaged)?;
+        let mut arrays = Arrays { from, left, hasher: blake3::Hasher::new() };
+        header.mesh(&mut arrays).filter(|_| arrays.end()).ok_or(CacheMiss::Damaged)
+    }
+}
+
+/// The arrays of a stored mesh, one after another.
+struct Arrays<R> {
+    from: R,
+    /// Bytes of arrays that are still to come.
+    left: u64,
+    hasher: blake3::Hasher,
+}
+
+impl<R: Read> Arrays<R> {
+    /// The next `count` items; `None` if there are not so many.
+    fn take<T: Pod>(&mut self, count: usize) -> Option<Vec<T>> {
+        let bytes = (count as u64).checked_mul(size_of::<T>() as u64)?;
+        self.left = self.left.checked_sub(bytes)?;
+        let mut items: Vec<T> = bytemuck::allocation::try_zeroed_vec(count).ok()?;
+        for chunk in bytemuck::cast_slice_mut::<T, u8>(&mut items).chunks_mut(CHUNK) {
+            self.from.read_exact(chunk).ok()?;
+            self.hasher.update(chunk);
+        }
+        Some(items)
+    }
+
+    /// Whether all was taken, and the hash that follows is that of what was.
+    fn end(&mut self) -> bool {
+        let mut hash = [0; HASH];
+        self.left == 0 && self.from.read_exact(&mut hash).is_ok() && *self.hasher.finalize().as_bytes() == hash
     }
 }
 
 impl Header {
-    /// The mesh whose arrays these bytes are; `None` if they do not fit.
-    fn mesh(self, mut arrays: &[u8]) -> Option<TetMesh> {
+    /// The mesh of these arrays; `None` if they do not fit.
+    fn mesh<R: Read>(self, arrays: &mut Arrays<R>) -> Option<TetMesh> {
         let (points, cells) = (usize::try_from(self.points).ok()?, usize::try_from(self.cells).ok()?);
-        let point_data: Vec<Vec3> = take(&mut arrays, points)?;
-        let cell_data: Vec<[u32; 4]> = take(&mut arrays, cells)?;
-        let neighbors: Vec<[u32; 4]> = take(&mut arrays, cells)?;
+        let point_data: Vec<Vec3> = arrays.take(points)?;
+        let cell_data: Vec<[u32; 4]> = arrays.take(cells)?;
+        let neighbors: Vec<[u32; 4]> = arrays.take(cells)?;
+        let within = |indices: &[[u32; 4]], count: usize| indices.iter().flatten().all(|&i| (i as usize) < count);
+        let known = neighbors.iter().flatten().all(|&n| n == NONE || (n as usize) < cells);
+        if !(known && within(&cell_data, points)) {
+            return None;
+        }
         let mut fields = Vec::with_capacity(self.fields.len());
         for field in self.fields {
             let (location, tuples) = if field.at_points { (Location::Point, points) } else { (Location::Cell, cells) };
             let components = usize::try_from(field.components).ok().filter(|&n| n > 0)?;
-            let values = take(&mut arrays, tuples.checked_mul(components)?)?;
+            let values = arrays.take(tuples.checked_mul(components)?)?;
             fields.push(Field { name: field.name, location, components, values });
         }
         let [given, merged, differ, cells_given, repeated, inverted, flat, non_manifold, folded] =
@@ -168,93 +286,10 @@ impl Header {
             faces_non_manifold: non_manifold,
             faces_folded: folded,
         };
-        let origin = DVec3::from(self.origin);
-        let mesh = TetMesh { origin, points: point_data, cells: cell_data, neighbors, fields, assembly };
-        arrays.is_empty().then_some(mesh)
+        let origin = DVec3::from(self.center);
+        Some(TetMesh { origin, points: point_data, cells: cell_data, neighbors, fields, assembly })
     }
-}
-
-/// The first `count` numbers of some bytes, which are then advanced; `None` if there are not so many.
-fn take<T: bytemuck::Pod>(bytes: &mut &[u8], count: usize) -> Option<Vec<T>> {
-    let (first, rest) = bytes.split_at_checked(count.checked_mul(size_of::<T>())?)?;
-    *bytes = rest;
-    Some(bytemuck::allocation::pod_collect_to_vec(first))
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::procedural::{self, Split};
-
-    fn mesh() -> TetMesh {
-        let parts = procedural::sphere_shell([7, 4, 2], Split::Six, DVec3::splat(1e6), [1.0, 2.0]);
-        let radius = parts.sample(|p| p.length());
-        let cells = parts.cells.len();
-        let fields = vec![
-            Field::point("radius", 1, radius),
-            Field::cell("number", 2, (0..2 * cells).map(|i| if i == 3 { f64::NAN } else { i as f64 }).collect()),
-        ];
-        TetMesh::assemble(&parts.points, &parts.cells, fields).unwrap()
-    }
-
-    fn key() -> CacheKey {
-        CacheKey { path: "shell.vtu".into(), size: 17, hash: [7; 32], options: "split 6".into() }
-    }
-
-    #[test]
-    fn a_mesh_comes_back_bit_for_bit() {
-        let mesh = mesh();
-        let back = TetMesh::from_cache(&mesh.to_cache(&key()).unwrap(), &key()).unwrap();
-        assert_eq!((back.origin, &back.points, &back.cells), (mesh.origin, &mesh.points, &mesh.cells));
-        assert_eq!((&back.neighbors, back.assembly), (&mesh.neighbors, mesh.assembly));
-        let bits = |m: &TetMesh| -> Vec<Vec<u64>> {
-            m.fields.iter().map(|f| f.values.iter().map(|v| v.to_bits()).collect()).collect()
-        };
-        assert_eq!(bits(&back), bits(&mesh));
-        assert_eq!(back.fields[1].name, "number");
-    }
-
-    #[test]
-    fn each_mismatch_has_its_reason() {
-        let bytes = mesh().to_cache(&key()).unwrap();
-        let miss = |bytes: &[u8], key: &CacheKey| TetMesh::from_cache(bytes, key).unwrap_err();
-        let changed = |at: usize| {
-            let mut bytes = bytes.clone();
-            bytes[at] ^= 1;
-            bytes
-        };
-        assert_eq!(miss(&changed(0), &key()), CacheMiss::Foreign);
-        assert_eq!(miss(&changed(8), &key()), CacheMiss::Schema);
-        assert_eq!(miss(&changed(12), &key()), CacheMiss::Foreign);
-        assert_eq!(miss(&changed(20), &key()), CacheMiss::Damaged);
-        assert_eq!(miss(&changed(bytes.len() - 1), &key()), CacheMiss::Damaged);
-        assert_eq!(miss(&bytes[..bytes.len() - 1], &key()), CacheMiss::Damaged);
-        assert_eq!(miss(&[], &key()), CacheMiss::Foreign);
-        for other in [
-            CacheKey { path: "other.vtu".into(), ..key() },
-            CacheKey { size: 18, ..key() },
-            CacheKey { hash: [8; 32], ..key() },
-            CacheKey { options: "split 5".into(), ..key() },
-        ] {
-            assert_eq!(miss(&bytes, &other), CacheMiss::Key);
-        }
-    }
-
-    proptest! {
-        /// Content whose hash holds but whose parts do not fit: as a fault of ours would write it.
-        #[test]
-        fn nothing_that_does_not_fit_is_taken(at in any::<proptest::sample::Index>(), to in any::<u8>()) {
-            let mut bytes = mesh().to_cache(&key()).unwrap();
-            let at = PREAMBLE + at.index(bytes.len() - PREAMBLE);
-            bytes[at] = to;
-            let hash = blake3::hash(&bytes[PREAMBLE..]);
-            bytes[PREAMBLE - 32..PREAMBLE].copy_from_slice(hash.as_bytes());
-            // Any mesh that is given has parts that fit; a panic would fail the test.
-            if let Ok(mesh) = TetMesh::from_cache(&bytes, &key()) {
-                prop_assert_eq!(mesh.cells.len(), mesh.neighbors.len());
-            }
-        }
-    }
-}
+mod tests;

@@ -3,7 +3,8 @@
 //! A [`TetMesh`] holds points, positively oriented cells, the neighbour across every face, and point or cell
 //! fields. [`TetMesh::assemble`] makes one of raw points and cells: it merges coincident points, orients the
 //! cells, drops those with repeated vertices, keeps flat ones in the adjacency, and counts all it did.
-//! [`TetMesh::validate`] reports what else is known. [`procedural`] makes meshes with known answers.
+//! [`TetMesh::validate`] reports what else is known. [`cache`] stores a mesh, [`procedural`] makes some with known
+//! answers.
 //!
 //! ```
 //! use tetlux_mesh::{Component, Field, TetMesh};
@@ -18,7 +19,7 @@
 
 mod adjacency;
 mod assemble;
-mod cache;
+pub mod cache;
 mod error;
 mod field;
 mod gradient;
@@ -30,4 +31,4 @@ pub use assemble::{Assembly, coincident};
 pub use error::MeshError;
 pub use field::{Component, Field, Location, ScalarField};
 pub use mesh::{FACES, NONE, TetMesh};
-pub use report::Report;
+pub use report::{Check, Report};

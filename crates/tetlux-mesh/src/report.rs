@@ -62,25 +62,47 @@ impl Report {
         }
     }
 
-    /// What a user should know before trusting a picture of this mesh, a sentence each; empty if nothing is wrong.
-    pub fn faults(&self) -> Vec<String> {
+    /// All that a mesh is checked for, with the number of places found: none where there is nothing wrong.
+    pub fn checks(&self) -> [Check; 9] {
         let a = &self.assembly;
         [
-            (a.points_merged, "coincident points were merged"),
-            (a.merged_data_differ, "merged points carry data that differ from those kept"),
-            (a.cells_repeated, "cells with repeated vertices were dropped"),
-            (a.cells_inverted, "inverted cells were turned round"),
-            (a.cells_flat, "cells have zero volume: kept in the adjacency, without optical depth"),
-            (a.faces_non_manifold, "faces are shared by three or more cells: cells overlap there"),
-            (a.faces_folded, "faces have both their cells on one side: cells overlap there"),
-            (self.quads_split_both_ways, "quadrilaterals are split along both diagonals: cells do not conform there"),
-            (self.points_unused, "points are used by no cell"),
+            ("merged points", a.points_merged, "coincident points were merged"),
+            ("differing data", a.merged_data_differ, "merged points carry data that differ from those kept"),
+            ("unused points", self.points_unused, "points are used by no cell"),
+            ("repeated vertices", a.cells_repeated, "cells with repeated vertices were dropped"),
+            ("inverted cells", a.cells_inverted, "inverted cells were turned round"),
+            ("flat cells", a.cells_flat, "cells have zero volume: kept in the adjacency, without optical depth"),
+            (
+                "non-manifold faces",
+                a.faces_non_manifold,
+                "faces are shared by three or more cells: cells overlap there",
+            ),
+            ("folded faces", a.faces_folded, "faces have both their cells on one side: cells overlap there"),
+            (
+                "split both ways",
+                self.quads_split_both_ways,
+                "quadrilaterals are split along both diagonals: cells do not conform there",
+            ),
         ]
-        .into_iter()
-        .filter(|&(count, _)| count > 0)
-        .map(|(count, what)| format!("{count} {what}"))
-        .collect()
+        .map(|(name, count, meaning)| Check { name, count, meaning })
     }
+
+    /// What a user should know before trusting a picture of this mesh, a sentence each; empty if nothing is wrong.
+    pub fn faults(&self) -> Vec<String> {
+        let found = self.checks().into_iter().filter(|check| check.count > 0);
+        found.map(|check| format!("{} {}", check.count, check.meaning)).collect()
+    }
+}
+
+/// Something that a mesh is checked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Check {
+    /// What is looked for, in short.
+    pub name: &'static str,
+    /// How often it was found.
+    pub count: usize,
+    /// What it means, as the rest of a sentence that begins with the count.
+    pub meaning: &'static str,
 }
 
 impl TetMesh {

@@ -7,7 +7,7 @@ use tetlux_mesh::procedural::Split;
 
 use super::{EDGES, read};
 use crate::damage::{config, damages};
-use crate::source::Source;
+use crate::source::{Files, Source};
 use crate::words::{HOSTILE, replace_number};
 use crate::{IngestError, MixedMesh};
 
@@ -25,7 +25,7 @@ fn read_bytes(nodes: &[u8], elements: &[u8], by: &str) -> Result<MixedMesh, Inge
     let path = |extension: &str| -> PathBuf { folder.path().join("a.1").with_extension(format!("1.{extension}")) };
     std::fs::write(path("node"), nodes).unwrap();
     std::fs::write(path("ele"), elements).unwrap();
-    let mesh = read(Source::open(&path(by))?)?;
+    let mesh = read(Source::open(&path(by))?, &mut Files::default())?;
     mesh.check()?;
     Ok(mesh)
 }
@@ -110,7 +110,9 @@ fn what_is_wrong_is_told_with_its_file_and_place() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("b.NODE");
     std::fs::write(&path, NODES).unwrap();
-    assert!(matches!(read(Source::open(&path).unwrap()), Err(IngestError::Io { path, .. }) if path.ends_with("b.ELE")));
+    assert!(
+        matches!(read(Source::open(&path).unwrap(), &mut Files::default()), Err(IngestError::Io { path, .. }) if path.ends_with("b.ELE"))
+    );
 }
 
 #[test]

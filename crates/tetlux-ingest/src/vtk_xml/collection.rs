@@ -7,7 +7,7 @@ use super::document::{Document, Kind, Listed};
 use super::ghosts::Ghosts;
 use super::join::{Part, join};
 use super::{BYTE_ORDER_MARK, lattice, unstructured};
-use crate::source::Source;
+use crate::source::{Files, Source};
 use crate::{IngestError, Place};
 
 /// Collections may list collections, but not deeper.
@@ -21,15 +21,16 @@ pub(super) enum Contents {
 }
 
 /// Reads files, each once.
-pub(super) struct Reader {
+pub(super) struct Reader<'a> {
+    files: &'a mut Files,
     time: Option<usize>,
     seen: HashSet<PathBuf>,
 }
 
-impl Reader {
+impl<'a> Reader<'a> {
     /// A reader of this file and those it lists, at a time step.
-    pub(super) fn new(path: &Path, time: Option<usize>) -> Reader {
-        let mut reader = Reader { time, seen: HashSet::new() };
+    pub(super) fn new(path: &Path, time: Option<usize>, files: &'a mut Files) -> Self {
+        let mut reader = Reader { files, time, seen: HashSet::new() };
         reader.first_time(path);
         reader
     }
@@ -137,7 +138,7 @@ impl Reader {
             let what = format!("files that list files, more than {DEEPEST} deep");
             return Err(source.malformed(place, what, &listed.file, "list the files in one"));
         }
-        let file = Source::open(&path).map_err(|why| within(source, why))?;
+        let file = self.files.open(&path).map_err(|why| within(source, why))?;
         if !self.first_time(&path) {
             let remedy = "each file may be listed once, and none in itself";
             return Err(source.malformed(place, "a file that was listed before", &listed.file, remedy));

@@ -1,10 +1,12 @@
 //! What the readers make of files: written here in every encoding, broken in every place, and real ones.
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test's helpers fail and tell like the test")]
 
+mod cached;
 mod hostile;
 mod legacy;
 mod plot3d;
 mod real;
+mod unused;
 mod vtk_xml;
 mod vtu;
 mod writers;

@@ -57,10 +57,10 @@ fn faults_are_told_with_their_numbers() {
         faults,
         [
             "1 coincident points were merged",
+            "2 points are used by no cell",
             "1 cells with repeated vertices were dropped",
             "1 inverted cells were turned round",
             "1 cells have zero volume: kept in the adjacency, without optical depth",
-            "2 points are used by no cell",
         ]
     );
     let report = Report {
@@ -74,4 +74,7 @@ fn faults_are_told_with_their_numbers() {
     for (fault, start) in faults.iter().zip(["4 merged points", "5 faces", "6 faces", "3 quadrilaterals"]) {
         assert!(fault.starts_with(start), "{fault}");
     }
+    // What was looked for and not found is told too.
+    let counts = report.checks().map(|check| (check.name, check.count));
+    assert_eq!(counts[1..3], [("differing data", 4), ("unused points", 0)]);
 }
