@@ -14,7 +14,7 @@ use tetlux_optics::symmetric_f32::weights_symmetric;
 use tetlux_optics::transfer_f32::{Weights, integrate, piece_at, pieces};
 use tetlux_order::{Eye, centroid};
 use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray};
-use tetlux_render::Renderer;
+use tetlux_render::{Model, Renderer};
 use tetlux_scene::{Backend, Method, Order, Plan};
 use tetlux_tables::{Table, TableSpec};
 
@@ -90,20 +90,22 @@ fn tables(c: &mut Criterion) {
 
 fn picture(c: &mut Criterion) {
     let mesh = cube_mesh(SIDE);
-    let renderer = Renderer::new();
+    let (renderer, model) = (Renderer::new(), Model::new(&mesh));
     let mut group = c.benchmark_group("picture");
     group.sample_size(10);
     for (name, backend, order) in [
         ("cpu centroid", Backend::Cpu, Order::Centroid),
         ("cpu pixel", Backend::Cpu, Order::Pixel),
+        ("cpu exact", Backend::Cpu, Order::Exact),
         ("gpu centroid", Backend::Gpu, Order::Centroid),
+        ("gpu exact", Backend::Gpu, Order::Exact),
     ] {
         let scene = scene(&mesh, true, Method { backend, order, ..Method::default() });
         let plan = match Plan::new(&scene, &mesh, renderer.device()) {
             Ok(plan) => plan,
             Err(error) => panic!("{name}: {error}"),
         };
-        group.bench_function(name, |b| b.iter(|| renderer.render(&scene, &mesh, &plan)));
+        group.bench_function(name, |b| b.iter(|| renderer.render(&scene, &model, &plan)));
     }
     let scene = scene(&mesh, true, Method::default());
     group.bench_function("plan", |b| b.iter(|| Plan::new(&scene, &mesh, renderer.device())));

@@ -27,7 +27,7 @@ use tetlux_mesh::{Component, Field, TetMesh};
 use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_reference::{Caster, Ray};
-use tetlux_render::Renderer;
+use tetlux_render::{Model, Renderer};
 use tetlux_scene::{Backend, Camera, Method, Order, Plan, Projection, Scene, View};
 
 pub use closed_form::{Convex, Judged, composite, depth_of, judge};
@@ -143,7 +143,7 @@ pub fn plan(mesh: &TetMesh, scene: &Scene, way: Way) -> Plan {
 
 /// The picture.
 pub fn render(mesh: &TetMesh, scene: &Scene, way: Way) -> Image {
-    let frame = renderer().render(scene, mesh, &plan(mesh, scene, way));
+    let frame = renderer().render(scene, &Model::new(mesh), &plan(mesh, scene, way));
     frame.unwrap_or_else(|e| panic!("{way:?} cannot be rendered: {e}")).image
 }
 

@@ -6,7 +6,7 @@ use anyhow::{Result, bail};
 use serde::Serialize;
 use tetlux_image::{Encoding, Image, Metrics, compare, difference_picture, read_exr, write_png};
 use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray};
-use tetlux_render::Renderer;
+use tetlux_render::{Model, Renderer};
 use tetlux_scene::{Backend, Order, Plan};
 
 use crate::input::{Input, SceneArgs, stem};
@@ -157,7 +157,7 @@ fn ordering_faults(
     reference: &Image,
 ) -> Result<(OrderingFaults, Image)> {
     let sorted_plan = Plan { backend: Backend::Cpu, order: Order::Pixel, ..plan.clone() };
-    let sorted = progress::during("sorting every pixel", || renderer.render(&input.scene, &input.mesh, &sorted_plan))?;
+    let sorted = progress::during("sorting every pixel", || renderer.render(&input.scene, &Model::new(&input.mesh), &sorted_plan))?;
     let budget = input.scene.method.max_error;
     let error =
         |a: &[f32; 4], b: &[f32; 4]| (0..4).map(|i| (f64::from(a[i]) - f64::from(b[i])).abs()).fold(0.0, f64::max);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use tetlux_image::{Encoding, Image, write_exr, write_png};
-use tetlux_render::{Frame, Renderer, Stages};
+use tetlux_render::{Frame, Model, Renderer, Stages};
 use tetlux_scene::Plan;
 
 use crate::input::{Input, SceneArgs};
@@ -57,7 +57,7 @@ pub(crate) fn render(input: &Input, renderer: &Renderer, announce: impl FnOnce(&
     let mut stages = Stages::default();
     let plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, renderer.device()))?;
     announce(&plan);
-    let mut frame = progress::during("rendering", || renderer.render(&input.scene, &input.mesh, &plan))?;
+    let mut frame = progress::during("rendering", || renderer.render(&input.scene, &Model::new(&input.mesh), &plan))?;
     let mut all = stages.into_vec();
     all.append(&mut frame.stages);
     frame.stages = all;

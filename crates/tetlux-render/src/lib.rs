@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use tetlux_mesh::{Field, TetMesh, procedural};
-//! use tetlux_render::Renderer;
+//! use tetlux_render::{Model, Renderer};
 //! use tetlux_scene::{Plan, SceneFile};
 //!
 //! let parts = procedural::cuboid([4, 4, 4], procedural::Split::Six, [[-1.0; 3].into(), [1.0; 3].into()]);
@@ -22,7 +22,7 @@
 //! let scene = file.scene(&mesh, 0)?;
 //! let renderer = Renderer::new();
 //! let plan = Plan::new(&scene, &mesh, renderer.device())?;
-//! let frame = renderer.render(&scene, &mesh, &plan)?;
+//! let frame = renderer.render(&scene, &Model::new(&mesh), &plan)?;
 //! assert!(frame.image.pixels()[32 * 64 + 32][3] > 0.5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -36,22 +36,25 @@ mod eye_space;
 mod gpu;
 #[cfg(test)]
 mod layout_tests;
+mod model;
+mod order;
 mod resources;
 mod stage;
 mod tiles;
 
 pub use error::RenderError;
+pub use model::Model;
 pub use resources::Resources;
 pub use stage::{Stage, Stages};
 
 use std::ops::Range;
+use std::sync::Mutex;
 
 use tetlux_image::Image;
-use tetlux_mesh::TetMesh;
 use tetlux_optics::Classification;
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
-use tetlux_order::Eye;
-use tetlux_scene::{Backend, Device, Integrator, Order, Plan, Scene};
+use tetlux_order::{OrderReport, Orderer};
+use tetlux_scene::{Backend, Device, Integrator, Plan, Scene};
 
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::{DeviceView, Lens};
@@ -66,6 +69,8 @@ pub struct Frame {
     pub stages: Vec<Stage>,
     /// What it took of the device.
     pub resources: Resources,
+    /// How the cells were ordered.
+    pub order: OrderReport,
 }
 
 /// What a picture is made of.
@@ -77,8 +82,8 @@ struct Job<'a> {
     weights: Weights,
     /// The cells to draw, nearest first.
     order: &'a [u32],
-    /// Ranges of positions in `order`, ascending and apart, whose cells have no order among themselves: only the CPU
-    /// back end sorts them along each ray.
+    /// Ranges of positions in `order`, ascending and apart, whose cells have no order among themselves: they are
+    /// sorted along each ray.
     groups: &'a [Range<u32>],
     /// Largest error of a pixel that is allowed.
     max_error: f64,
@@ -86,10 +91,11 @@ struct Job<'a> {
     size: [u32; 2],
 }
 
-/// Renders by plan; holds the graphics device once one has been used.
+/// Renders by plan; holds the graphics device once one has been used, and the last order.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Option<gpu::Gpu>,
+    orderer: Mutex<Orderer>,
 }
 
 impl Default for Renderer {
@@ -101,7 +107,7 @@ impl Default for Renderer {
 impl Renderer {
     /// Looks for a graphics adapter, hardware before software; opens none.
     pub fn new() -> Renderer {
-        Renderer { gpu: gpu::Gpu::find() }
+        Renderer { gpu: gpu::Gpu::find(), orderer: Mutex::default() }
     }
 
     /// The adapter there is, for the plan.
@@ -114,17 +120,10 @@ impl Renderer {
     /// # Errors
     ///
     /// No adapter where the plan wants one; a mesh or a picture over the device's limits; a driver that fails.
-    pub fn render(&self, scene: &Scene, mesh: &TetMesh, plan: &Plan) -> Result<Frame, RenderError> {
+    pub fn render(&self, scene: &Scene, model: &Model, plan: &Plan) -> Result<Frame, RenderError> {
         let mut stages = Stages::default();
-        let view = &plan.view;
-        let eye = if view.orthographic { Eye::Direction(view.forward) } else { Eye::Point(view.eye) };
-        let order = match plan.order {
-            Order::None => plan.cells.clone(),
-            // Pixels are sorted the faster the better they are sorted already.
-            Order::Centroid | Order::Pixel | Order::Auto => {
-                stages.run("order", || tetlux_order::centroid(mesh, eye, &plan.cells))
-            }
-        };
+        let (mesh, view) = (model.mesh(), &plan.view);
+        let order = order::order(&self.orderer, model, plan, &mut stages);
         let device_mesh = stages.run("prepare", || DeviceMesh::new(mesh, &scene.scalar));
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let Classification::OneField(transfer) = &scene.classification else { return Err(RenderError::Bivariate) };
@@ -134,15 +133,14 @@ impl Renderer {
             // The CPU back end has these two: the plan sees to it.
             _ => Weights::Direct,
         };
-        let everything = [0..order.len() as u32];
         let job = Job {
             mesh: &device_mesh,
             lens,
             eye: EyeSpace::new(view, mesh, &device_mesh),
             pieces: &pieces,
             weights,
-            order: &order,
-            groups: if plan.order == Order::Pixel { &everything } else { &[] },
+            order: &order.cells,
+            groups: &order.groups,
             max_error: scene.method.max_error,
             size: view.size,
         };
@@ -150,10 +148,10 @@ impl Renderer {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
                 let pixels = tiles::draw(&job, &mut stages);
-                (pixels, Resources { cells: order.len(), ..Resources::default() })
+                (pixels, Resources { cells: order.cells.len(), ..Resources::default() })
             }
         };
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
-        Ok(Frame { image, stages: stages.into_vec(), resources })
+        Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report })
     }
 }

@@ -53,6 +53,15 @@ named! {
         None,
         /// By the distance of the cells' centroids: fast, and wrong wherever centroids mislead.
         Centroid,
+        /// By the eye's power to the cells' circumspheres: exact on Delaunay meshes alone.
+        Power,
+        /// Across the faces between cells: exact on convex meshes. Williams 1992.
+        Mpvo,
+        /// The same, begun at the farthest faces of the boundary: nearly right on meshes that are not convex. Williams 1992.
+        Mpvonc,
+        /// Across faces and across the gaps that the picture's own rays cross: exact on every mesh (Cook et al. 2004).
+        /// Cells in a cycle, or that overlap, are sorted for every pixel.
+        Exact,
         /// Every pixel's segments sorted along its ray: exact on meshes whose cells do not overlap. CPU only.
         Pixel,
     }
@@ -172,7 +181,7 @@ impl Method {
         if self.backend == Backend::Gpu && self.order == Order::Pixel {
             return Some(
                 "order \"pixel\" sorts every pixel's segments, which only the CPU back end does: use --backend cpu, \
-                 or --order centroid"
+                 or --order exact"
                     .into(),
             );
         }

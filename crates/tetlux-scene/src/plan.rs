@@ -76,16 +76,10 @@ impl Plan {
             return Err(SceneError::Method(reason));
         }
         let (backend, backend_reason) = choose_backend(&scene.method, device)?;
-        let (order, order_reason) = choose_order(scene, backend);
+        let (order, order_reason) = choose_order(scene);
         let (target, target_reason) = choose_target(scene.method.target, device);
         let decided = Method { backend, order, target, ..scene.method.decided() };
-        if order == Order::Centroid {
-            warnings.push(
-                "centroid order is not exact: where the transfer function has narrow peaks, pixels may be wrong \
-                 by far more than the budget (`compare` shows them; --order pixel mends them)"
-                    .into(),
-            );
-        }
+        warnings.extend(doubts_of(order).map(String::from));
         if backend == Backend::Gpu && target != Target::Rgba32f {
             warnings.push(format!("target {target}: {}", error_of(target)));
         }
@@ -235,6 +229,22 @@ fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, 
     }
 }
 
+/// What may be wrong in a picture of that order.
+fn doubts_of(order: Order) -> Option<&'static str> {
+    match order {
+        Order::Auto | Order::Exact | Order::Pixel | Order::None => None,
+        Order::Centroid => Some(
+            "centroid order is not exact: where the transfer function has narrow peaks, pixels may be wrong by far \
+             more than the budget (`compare` shows them; --order exact mends them)",
+        ),
+        Order::Power => {
+            Some("power order is right on Delaunay meshes alone, and elsewhere worse than centroid: --order exact")
+        }
+        Order::Mpvo => Some("mpvo order is right on convex meshes alone: --order exact on others"),
+        Order::Mpvonc => Some("mpvonc order is a guess where the mesh is not convex: --order exact is right there too"),
+    }
+}
+
 /// The best that the adapter can blend, unless one is asked for.
 fn choose_target(asked: Target, device: Option<&Device>) -> (Target, String) {
     let target = match asked {
@@ -247,15 +257,14 @@ fn choose_target(asked: Target, device: Option<&Device>) -> (Target, String) {
     (target, format!("{why}{}", error_of(target)))
 }
 
-fn choose_order(scene: &Scene, backend: Backend) -> (Order, String) {
+fn choose_order(scene: &Scene) -> (Order, String) {
     let one_luminance = scene.single_luminance().is_some();
-    match (scene.method.order, backend) {
-        (Order::Auto, _) if one_luminance => {
+    match scene.method.order {
+        Order::Auto if one_luminance => {
             (Order::None, "there is one luminance throughout, so the order does not matter".into())
         }
-        (Order::Auto, Backend::Cpu) => (Order::Pixel, "exact where cells do not overlap".into()),
-        (Order::Auto, _) => (Order::Centroid, "the only one this back end has".into()),
-        (asked, _) => (asked, "as asked".into()),
+        Order::Auto => (Order::Exact, "right along every ray of the picture, on every mesh".into()),
+        asked => (asked, "as asked".into()),
     }
 }
 
@@ -410,12 +419,12 @@ mod tests {
         let colors = [[0.1, 0.2, 0.3], [0.3, 0.2, 0.1], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let (hardware, software, half) = (device(false, true), device(true, true), device(false, false));
         for (backend, order, device, expected) in [
-            (Backend::Auto, Order::Auto, None, Some((Backend::Cpu, Order::Pixel))),
-            (Backend::Auto, Order::Auto, Some(&hardware), Some((Backend::Gpu, Order::Centroid))),
-            (Backend::Auto, Order::Auto, Some(&software), Some((Backend::Cpu, Order::Pixel))),
-            (Backend::Auto, Order::Auto, Some(&half), Some((Backend::Cpu, Order::Pixel))),
-            (Backend::Gpu, Order::Auto, Some(&software), Some((Backend::Gpu, Order::Centroid))),
-            (Backend::Gpu, Order::Auto, Some(&half), Some((Backend::Gpu, Order::Centroid))),
+            (Backend::Auto, Order::Auto, None, Some((Backend::Cpu, Order::Exact))),
+            (Backend::Auto, Order::Auto, Some(&hardware), Some((Backend::Gpu, Order::Exact))),
+            (Backend::Auto, Order::Auto, Some(&software), Some((Backend::Cpu, Order::Exact))),
+            (Backend::Auto, Order::Auto, Some(&half), Some((Backend::Cpu, Order::Exact))),
+            (Backend::Gpu, Order::Auto, Some(&software), Some((Backend::Gpu, Order::Exact))),
+            (Backend::Gpu, Order::Auto, Some(&half), Some((Backend::Gpu, Order::Exact))),
             (Backend::Auto, Order::Pixel, Some(&hardware), Some((Backend::Cpu, Order::Pixel))),
             (Backend::Gpu, Order::Auto, None, None),
             (Backend::Gpu, Order::Pixel, Some(&hardware), None),

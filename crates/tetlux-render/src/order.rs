@@ -1,0 +1,46 @@
+//! The order in which a picture's cells are composited.
+
+use std::sync::{Mutex, PoisonError};
+
+use tetlux_order::{Method, Order, Orderer, Sampling};
+use tetlux_scene::{Order as Asked, Plan, View};
+
+use crate::{Model, Stages};
+
+/// The cells that the plan keeps, nearest first.
+pub(crate) fn order(orderer: &Mutex<Orderer>, model: &Model, plan: &Plan, stages: &mut Stages) -> Order {
+    let method = match plan.order {
+        Asked::None => return Order { cells: plan.cells.clone(), ..Order::default() },
+        Asked::Centroid | Asked::Pixel => {
+            // Of the cells that are drawn alone: no other cell decides their places.
+            let eye = sampling(&plan.view).eye();
+            let cells = stages.run("order", || tetlux_order::centroid(model.mesh(), eye, &plan.cells));
+            let end = cells.len() as u32;
+            // Pixels are sorted the faster the better they are sorted already.
+            let groups = if plan.order == Asked::Pixel && end > 1 { vec![0..end] } else { Vec::new() };
+            let report = tetlux_order::OrderReport { method: Method::Centroid, ..Default::default() };
+            return Order { cells, groups, report };
+        }
+        Asked::Power => Method::Power,
+        Asked::Mpvo => Method::Mpvo,
+        Asked::Mpvonc => Method::Mpvonc,
+        Asked::Exact | Asked::Auto => Method::Exact,
+    };
+    if model.known_facts().is_none() {
+        stages.run("facts", || model.facts());
+    }
+    stages.run("order", || {
+        let mut drawn = vec![false; model.mesh().cells().len()];
+        plan.cells.iter().for_each(|&cell| drawn[cell as usize] = true);
+        // An orderer that panicked is as good as a new one: it finds the whole order again.
+        let mut orderer = orderer.lock().unwrap_or_else(PoisonError::into_inner);
+        let order = orderer.order(model.mesh(), model.facts(), &sampling(&plan.view), method);
+        order.filter(|cell| drawn[cell as usize])
+    })
+}
+
+/// The rays of a view.
+fn sampling(view: &View) -> Sampling {
+    let View { eye, right, down, forward, size, pixel, orthographic, near } = *view;
+    Sampling { eye, right, down, forward, pixel, size, near, orthographic }
+}
