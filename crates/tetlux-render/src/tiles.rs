@@ -26,7 +26,7 @@ use crate::Job;
 use crate::stage::Stages;
 use bins::{Bins, TILE};
 use ramp::Ramp;
-use record::{Record, SetUp};
+use record::{Chunk, SetUp};
 use walk::{Light, Walk};
 
 /// Cells that are set up at a time: bounds the memory of their records, 128 bytes a cell.
@@ -57,17 +57,17 @@ fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> Vec<[f32; 4]> {
     let columns = bins::tiles(job.size)[0] as usize;
     let mut pixels = vec![[0.0; 4]; job.size[0] as usize * job.size[1] as usize];
     for batch in batches(job.order.len(), job.groups) {
-        let records = stages.run("set up", || set_up.records(level, &job.order[batch.clone()]));
-        let bins = stages.run("bin", || Bins::new(&records, job.size));
+        let chunks = stages.run("set up", || set_up.chunks(level, &job.order[batch.clone()]));
+        let bins = stages.run("bin", || Bins::new(&chunks, job.size));
         let groups = groups_in(job.groups, &batch);
         stages.run("draw", || {
             rows_of_tiles(&mut pixels, job.size).into_par_iter().enumerate().for_each(|(index, mut rows)| {
                 let origin = [index % columns, index / columns].map(|i| i as u32 * TILE);
                 let cells = bins.of(index);
                 if eye.orthographic {
-                    dispatch!(level, simd => draw_tile::<_, true>(simd, &light, origin, &records, cells, &groups, &mut rows));
+                    dispatch!(level, simd => draw_tile::<_, true>(simd, &light, origin, &chunks, cells, &groups, &mut rows));
                 } else {
-                    dispatch!(level, simd => draw_tile::<_, false>(simd, &light, origin, &records, cells, &groups, &mut rows));
+                    dispatch!(level, simd => draw_tile::<_, false>(simd, &light, origin, &chunks, cells, &groups, &mut rows));
                 }
             });
         });
@@ -115,7 +115,7 @@ fn draw_tile<S: Simd, const ORTHOGRAPHIC: bool>(
     simd: S,
     light: &Light,
     origin: [u32; 2],
-    records: &[Record],
+    chunks: &[Chunk],
     cells: &[u32],
     groups: &[Range<u32>],
     rows: &mut [&mut [[f32; 4]]],
@@ -133,11 +133,11 @@ fn draw_tile<S: Simd, const ORTHOGRAPHIC: bool>(
         let until = |end: u32| rest.partition_point(|&i| i < end);
         if let Some(group) = groups.first().filter(|group| group.start <= *cell) {
             let (run, after) = rest.split_at(until(group.end));
-            walk.add_sorted::<ORTHOGRAPHIC>(records, run);
+            walk.add_sorted::<ORTHOGRAPHIC>(chunks, run);
             rest = after;
         } else {
             let (run, after) = rest.split_at(until(start));
-            walk.add::<ORTHOGRAPHIC>(records, run);
+            walk.add::<ORTHOGRAPHIC>(chunks, run);
             rest = after;
         }
     }

@@ -4,13 +4,13 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
-use super::record::Record;
+use super::record::{CHUNK, Chunk};
 
 /// Side of a tile in pixels.
 pub(crate) const TILE: u32 = 16;
 
-/// Cells that are counted together by one core.
-const CHUNK: usize = 1 << 14;
+/// Chunks of cells that are counted together by one core.
+const SHARE: usize = 256;
 
 /// The cells of all tiles, one tile after another.
 pub(crate) struct Bins {
@@ -25,15 +25,17 @@ pub(crate) fn tiles(size: [u32; 2]) -> [u32; 2] {
 }
 
 impl Bins {
-    /// The positions of `records` for each tile, ascending.
-    pub(crate) fn new(records: &[Record], size: [u32; 2]) -> Bins {
+    /// The positions of cells for each tile, ascending.
+    pub(crate) fn new(chunks: &[Chunk], size: [u32; 2]) -> Bins {
         let [columns, rows] = tiles(size).map(|n| n as usize);
-        // Every chunk of records has its own place in every tile's list, so that chunks can be filled in any order.
-        let mut places: Vec<Vec<usize>> = records
-            .par_chunks(CHUNK)
-            .map(|chunk| {
+        // Every share of the cells has its own place in every tile's list, so that shares can be filled in any order.
+        let mut places: Vec<Vec<usize>> = chunks
+            .par_chunks(SHARE)
+            .map(|chunks| {
                 let mut counts = vec![0; columns * rows];
-                chunk.iter().for_each(|record| for_each_tile(record, columns, |tile| counts[tile] += 1));
+                for tiles in chunks.iter().flat_map(|chunk| &chunk.tiles) {
+                    for_each_tile(tiles, columns, |tile| counts[tile] += 1);
+                }
                 counts
             })
             .collect();
@@ -47,10 +49,10 @@ impl Bins {
         }
         starts.push(total);
         let cells: Vec<AtomicU32> = (0..total).map(|_| AtomicU32::new(0)).collect();
-        records.par_chunks(CHUNK).zip(&mut places).enumerate().for_each(|(chunk, (records, places))| {
-            for (i, record) in records.iter().enumerate() {
-                for_each_tile(record, columns, |tile| {
-                    cells[places[tile]].store((chunk * CHUNK + i) as u32, Ordering::Relaxed);
+        chunks.par_chunks(SHARE).zip(&mut places).enumerate().for_each(|(share, (chunks, places))| {
+            for (i, tiles) in chunks.iter().flat_map(|chunk| &chunk.tiles).enumerate() {
+                for_each_tile(tiles, columns, |tile| {
+                    cells[places[tile]].store((share * SHARE * CHUNK + i) as u32, Ordering::Relaxed);
                     places[tile] += 1;
                 });
             }
@@ -64,9 +66,11 @@ impl Bins {
     }
 }
 
-fn for_each_tile(record: &Record, columns: usize, mut f: impl FnMut(usize)) {
-    let [x, y] = [0, 1].map(|axis| record.first[axis] / TILE..record.end[axis].div_ceil(TILE));
-    if record.first[0] < record.end[0] {
-        y.for_each(|row| x.clone().for_each(|column| f(row as usize * columns + column as usize)));
+#[inline]
+fn for_each_tile(&[left, top, right, bottom]: &[u16; 4], columns: usize, mut f: impl FnMut(usize)) {
+    for y in top..bottom {
+        for x in left..right {
+            f(y as usize * columns + x as usize);
+        }
     }
 }

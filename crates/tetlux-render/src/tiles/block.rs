@@ -69,7 +69,10 @@ pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(
     if !front.simd_gt(back).any_true() {
         return None;
     }
-    let extent = (front - back).max(0.0);
+    // Where the ray misses the cell too, both between the farthest vertex and the nearest.
+    let back = back.min(record.nearest);
+    let front = front.max(back);
+    let extent = front - back;
     let half = S::f32s::splat(simd, 0.5);
     let scalar = linear(simd, record.scalar, x, y);
     // The middle's depth from z_ref, the extent in depth, both over z_ref in perspective; the gradient likewise.

@@ -186,32 +186,43 @@ pub(crate) fn add_cut_segment<S: Simd>(
     let zero = S::f32s::splat(simd, 0.0);
     // Where the scalar is constant, any large slope makes the piece that begins at or below it the whole segment.
     let per_scalar = S::f32s::splat(simd, 1.0) / change.max(-change).max(1e-20);
-    if !falling.all_true() {
-        let length = falling.select(zero, length);
+    let one = S::f32s::splat(simd, 1.0);
+    // Front to back the pieces ascend where the scalar rises, and descend where it falls.
+    for (length, descend) in [(falling.select(zero, length), false), (falling.select(length, zero), true)] {
+        if !length.simd_gt(0.0).any_true() {
+            continue;
+        }
+        let per_scalar = if descend { -per_scalar } else { per_scalar };
         let mut begin = zero;
-        for (i, ramp) in ramps.iter().enumerate() {
-            let end = if i + 1 < ramps.len() {
-                ((S::f32s::splat(simd, ramp.ends[1] - base) - front) * per_scalar).max(0.0).min(1.0)
-            } else {
-                S::f32s::splat(simd, 1.0)
-            };
+        for step in 1..=ramps.len() {
+            let ramp = &ramps[if descend { ramps.len() - step } else { step - 1 }];
+            let cut = ramp.ends[usize::from(!descend)] - base;
+            let share = (S::f32s::splat(simd, cut) - front) * per_scalar;
+            let end = if step < ramps.len() { share.max(0.0).min(1.0) } else { one };
             add_part(simd, ramp, base, model, front, back, (end - begin) * length, pixels);
             begin = end;
         }
     }
-    if falling.any_true() {
-        let length = falling.select(length, zero);
-        let mut begin = zero;
-        for (i, ramp) in ramps.iter().enumerate().rev() {
-            let end = if i > 0 {
-                ((front - (ramp.ends[0] - base)) * per_scalar).max(0.0).min(1.0)
-            } else {
-                S::f32s::splat(simd, 1.0)
-            };
-            add_part(simd, ramp, base, model, front, back, (end - begin) * length, pixels);
-            begin = end;
+}
+
+/// The one of several pieces on which all segments that have a length lie; `None` if there is none.
+#[inline(always)]
+pub(crate) fn only<'a, S: Simd>(
+    ramps: &'a [Ramp],
+    base: f32,
+    front: S::f32s,
+    back: S::f32s,
+    length: S::f32s,
+) -> Option<&'a Ramp> {
+    let (low, high) = (front.min(back), front.max(back));
+    let none = length.simd_le(0.0);
+    for ramp in ramps {
+        let inside = low.simd_ge(ramp.ends[0] - base) & high.simd_le(ramp.ends[1] - base);
+        if (inside | none).all_true() {
+            return Some(ramp);
         }
     }
+    None
 }
 
 /// Composites the part of a segment that lies on one of several pieces.

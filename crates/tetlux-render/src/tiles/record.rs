@@ -17,6 +17,7 @@ use tetlux_optics::transfer_f32::{Piece, piece_at};
 
 use crate::device_mesh::{DeviceMesh, NEGATIVE};
 use crate::eye_space::EyeSpace;
+use crate::tiles::bins::TILE;
 use crate::tiles::vector::{Vector, dot};
 
 /// A vertex of the mesh as seen.
@@ -93,7 +94,20 @@ pub(crate) struct SetUp<'a> {
 }
 
 /// Cells that one core sets up at a time.
-const CHUNK: usize = 64;
+pub(crate) const CHUNK: usize = 64;
+
+/// The records of some cells, and for each the first and one past the last tile of its box, in x and y.
+#[derive(Clone)]
+pub(crate) struct Chunk {
+    pub(crate) records: [Record; CHUNK],
+    pub(crate) tiles: [[u16; 4]; CHUNK],
+}
+
+/// The record at a position.
+#[inline(always)]
+pub(crate) fn at(chunks: &[Chunk], index: u32) -> &Record {
+    &chunks[index as usize / CHUNK].records[index as usize % CHUNK]
+}
 
 /// Cells in the widest vectors.
 const WIDEST: usize = 8;
@@ -104,16 +118,12 @@ const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
 
 impl SetUp<'_> {
     /// Sets up cells, in their order.
-    pub(crate) fn records(&self, level: Level, cells: &[u32]) -> Vec<Record> {
-        let mut records = vec![Record::default(); cells.len()];
-        records.par_chunks_mut(CHUNK).zip(cells.par_chunks(CHUNK)).for_each(|(records, cells)| {
-            dispatch!(level, simd => self.chunk(simd, cells, records));
-        });
-        records
+    pub(crate) fn chunks(&self, level: Level, cells: &[u32]) -> Vec<Chunk> {
+        cells.par_chunks(CHUNK).map(|cells| dispatch!(level, simd => self.chunk(simd, cells))).collect()
     }
 
     #[inline(always)]
-    fn chunk<S: Simd>(&self, simd: S, cells: &[u32], records: &mut [Record]) {
+    fn chunk<S: Simd>(&self, simd: S, cells: &[u32]) -> Chunk {
         // All that is needed is loaded first, the misses at once.
         let mut names = [[0; 4]; CHUNK];
         for (names, &cell) in names.iter_mut().zip(cells) {
@@ -126,11 +136,18 @@ impl SetUp<'_> {
             }
         }
         std::hint::black_box(touched);
+        let mut chunk = Chunk { records: [Record::default(); CHUNK], tiles: [[0; 4]; CHUNK] };
         let lanes = S::f64s::LEN;
         for start in (0..cells.len()).step_by(lanes) {
             let end = (start + lanes).min(cells.len());
-            self.vector(simd, &cells[start..end], &names[start..end], &mut records[start..end]);
+            self.vector(simd, &cells[start..end], &names[start..end], &mut chunk.records[start..end]);
         }
+        for (tiles, record) in chunk.tiles.iter_mut().zip(&chunk.records) {
+            let [x, y] = record.first.map(|first| (first / TILE) as u16);
+            let [right, bottom] = record.end.map(|end| end.div_ceil(TILE) as u16);
+            *tiles = [x, y, right, bottom];
+        }
+        chunk
     }
 
     /// Sets up as many cells as there are lanes, or fewer.
@@ -234,22 +251,23 @@ impl SetUp<'_> {
         scale: S::f64s,
     ) -> [S::f64s; 4] {
         let splat = |x: f64| S::f64s::splat(simd, x);
-        let (side, size, depth) = if self.eye.orthographic {
-            (n.z, n.x.max(-n.x) + n.y.max(-n.y), splat(1.0))
+        let (side, size, across) = if self.eye.orthographic {
+            (n.z, n.x.max(-n.x) + n.y.max(-n.y), n.x * (origin.x - a.x) + n.y * (origin.y - a.y))
         } else {
-            let reach = a.reach().max(b.reach()).max(c.reach());
-            (dot(n, a), (n.x.max(-n.x) + n.y.max(-n.y) + n.z.max(-n.z)) * reach, origin.z / a.z.max(self.eye.near))
+            let (side, reach) = (dot(n, a), a.reach().max(b.reach()).max(c.reach()));
+            let in_front = a.z.simd_gt(self.eye.near);
+            let at_a = in_front.select(side, splat(0.0)) * origin.z / in_front.select(a.z, splat(1.0));
+            (side, (n.x.max(-n.x) + n.y.max(-n.y) + n.z.max(-n.z)) * reach, dot(n, origin) - at_a)
         };
         let toward = side.simd_ge(0.0).select(splat(1.0), splat(-1.0));
         // Seen edge-on the plane bounds nothing but the silhouette: any large slope of the right sign does, through
-        // the pixel of `a`, and both cells at the face choose the same.
+        // the pixel of `a` if that is in front of the eye, and both cells at the face choose the same.
         let edge_on = side.max(-side).simd_le(size * EDGE_ON);
         let inverse = splat(1.0) / edge_on.select((size * 1e-12).max(1e-200) * toward, side);
         let (x, y) = (n.x * scale * inverse, n.y * scale * inverse);
         let larger = f64::from(self.size[0].max(self.size[1])).max(NUDGE_SIDE);
         let nudge = x * (NUDGE[0] * larger) + y * (NUDGE[1] * larger);
-        let flat = (n.x * (origin.x - a.x * depth) + n.y * (origin.y - a.y * depth)) * inverse + nudge;
-        let at = edge_on.select(flat, dot(n, origin - a) * inverse);
+        let at = edge_on.select(across * inverse + nudge, dot(n, origin - a) * inverse);
         [limited(x), limited(y), limited(at), toward]
     }
 
@@ -276,7 +294,7 @@ impl SetUp<'_> {
         }
         let seen = record.first[0] < record.end[0] && record.first[1] < record.end[1];
         if !seen {
-            record.end = record.first;
+            (record.first, record.end) = ([0; 2], [0; 2]);
         }
         seen
     }

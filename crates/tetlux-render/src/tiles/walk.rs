@@ -5,8 +5,8 @@ use tetlux_optics::transfer_f32::Weights;
 
 use super::bins::TILE;
 use super::block::{Segments, WIDTH, places, segments};
-use super::ramp::{Pixels, Ramp, add_cut_segment, add_segment};
-use super::record::Record;
+use super::ramp::{Pixels, Ramp, add_cut_segment, add_segment, only};
+use super::record::{Chunk, Record, at};
 
 /// Pixels of a tile.
 pub(crate) const PIXELS: usize = (TILE * TILE) as usize;
@@ -16,6 +16,9 @@ const COLUMNS: u32 = TILE / WIDTH as u32;
 
 /// The first block of every row of blocks.
 const FIRST_COLUMN: u64 = 0x1111_1111_1111_1111;
+
+/// Numbers of pixels.
+const STEPS: [f32; TILE as usize] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
 
 /// Column in pixels, and row in blocks, of as many blocks as there are lanes.
 const BLOCK_COLUMNS: [f32; 16] = [0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0];
@@ -105,16 +108,15 @@ impl<'a, S: Simd> Walk<'a, S> {
     /// Places of a block's pixels, that of the tile's first being (x, y).
     #[inline(always)]
     fn places(&self, block: usize, x: f32, y: f32) -> (S::f32s, S::f32s) {
-        let rows = S::f32s::LEN / WIDTH;
-        let (column, row) = (block % COLUMNS as usize, block / COLUMNS as usize);
-        places(self.simd, x + (column * WIDTH) as f32, y + (row * rows) as f32)
+        let (column, row) = (block % COLUMNS as usize, block / COLUMNS as usize % TILE as usize);
+        places(self.simd, x + STEPS[column * WIDTH], y + STEPS[row * (S::f32s::LEN / WIDTH) % TILE as usize])
     }
 
     /// The part of an array of a tile's pixels that is a block.
     #[inline(always)]
     fn load(&self, values: &[f32; PIXELS], block: usize) -> S::f32s {
         let lanes = S::f32s::LEN;
-        S::f32s::from_slice(self.simd, &values[block * lanes..][..lanes])
+        S::f32s::from_slice(self.simd, &values[block % (PIXELS / lanes) * lanes..][..lanes])
     }
 
     #[inline(always)]
@@ -128,7 +130,7 @@ impl<'a, S: Simd> Walk<'a, S> {
     fn store(&mut self, block: usize, pixels: &Pixels<S>) {
         let lanes = S::f32s::LEN;
         for i in 0..4 {
-            pixels[i].store_slice(&mut self.tile[i][block * lanes..][..lanes]);
+            pixels[i].store_slice(&mut self.tile[i][block % (PIXELS / lanes) * lanes..][..lanes]);
         }
         if pixels[3].simd_ge(self.light.opaque).all_true() {
             self.alive &= !(1 << block);
@@ -168,21 +170,17 @@ impl<'a, S: Simd> Walk<'a, S> {
         let (columns, step) = (&BLOCK_COLUMNS[..lanes], (lanes / COLUMNS as usize) as f32 * rows);
         let columns = S::f32s::from_slice(self.simd, columns) + x;
         let mut y = S::f32s::from_slice(self.simd, &BLOCK_ROWS[..lanes]).mul_add(rows, S::f32s::splat(self.simd, y));
-        let fronts = record.fronts as usize;
+        let [p, q, r, s] = &record.planes;
         let mut seen = 0;
         for first in (0..PIXELS / lanes).step_by(lanes) {
-            let mut least = S::f32s::splat(self.simd, f32::MAX);
             if boxed >> first & (u64::MAX >> (64 - lanes)) != 0 {
-                for f in 0..fronts {
-                    for b in fronts..4 {
-                        let (front, back) = (record.planes[f], record.planes[b]);
-                        let (dx, dy) = (front[0] - back[0], front[1] - back[1]);
-                        // At the block's corner where the difference is largest.
-                        let corner = front[2] - back[2] + (dx * (WIDTH - 1) as f32).max(0.0) + (dy * (rows - 1.0)).max(0.0);
-                        let most = columns.mul_add(dx, y.mul_add(dy, S::f32s::splat(self.simd, corner)));
-                        least = least.min(most);
-                    }
-                }
+                let at = (self.simd, columns, y);
+                let least = match record.fronts {
+                    1 => most(p, q, at).min(most(p, r, at)).min(most(p, s, at)),
+                    2 => most(p, r, at).min(most(p, s, at)).min(most(q, r, at).min(most(q, s, at))),
+                    3 => most(p, s, at).min(most(q, s, at)).min(most(r, s, at)),
+                    _ => S::f32s::splat(self.simd, 1.0),
+                };
                 seen |= least.simd_gt(0.0).to_bitmask() << first;
             }
             y = y + step;
@@ -192,11 +190,11 @@ impl<'a, S: Simd> Walk<'a, S> {
 
     /// Composites cells behind what is there, one behind the other.
     #[inline(always)]
-    pub(crate) fn add<const ORTHOGRAPHIC: bool>(&mut self, records: &[Record], run: &[u32]) {
+    pub(crate) fn add<const ORTHOGRAPHIC: bool>(&mut self, chunks: &[Chunk], run: &[u32]) {
         for cells in run.chunks(AHEAD) {
-            touch(records, cells);
+            touch(chunks, cells);
             for &i in cells {
-                let record = &records[i as usize];
+                let record = at(chunks, i);
                 let mut blocks = self.blocks(record);
                 let (x, y) = self.from(record);
                 while blocks != 0 {
@@ -219,24 +217,35 @@ impl<'a, S: Simd> Walk<'a, S> {
     #[inline(always)]
     fn integrate(&self, record: &Record, segments: &Segments<S>, pixels: &mut Pixels<S>) {
         let Segments { front, back, length, .. } = *segments;
-        let [first, last] = record.pieces.map(|k| k as usize);
-        if first == last {
-            let ramp = &self.light.ramps[first];
-            let shift = record.base - ramp.ends[0];
-            add_segment(self.simd, ramp, self.light.model, front + shift, back + shift, length, pixels);
+        let ramps = &self.light.ramps[record.pieces[0] as usize..=record.pieces[1] as usize];
+        let ramp = if ramps.len() == 1 { ramps.first() } else { only::<S>(ramps, record.base, front, back, length) };
+        if let Some(ramp) = ramp {
+            if !ramp.is_empty() {
+                let shift = record.base - ramp.ends[0];
+                add_segment(self.simd, ramp, self.light.model, front + shift, back + shift, length, pixels);
+            }
         } else {
-            let ramps = &self.light.ramps[first..=last];
             add_cut_segment(self.simd, ramps, record.base, self.light.model, front, back, length, pixels);
         }
     }
 }
 
+/// By how much a front face's plane is before a back face's, at most, in blocks whose first pixels are at (x, y).
+#[inline(always)]
+fn most<S: Simd>(front: &[f32; 3], back: &[f32; 3], (simd, x, y): (S, S::f32s, S::f32s)) -> S::f32s {
+    let (dx, dy) = (front[0] - back[0], front[1] - back[1]);
+    let rows = (S::f32s::LEN / WIDTH) as f32;
+    // At the corner of a block where the difference is largest.
+    let corner = front[2] - back[2] + (dx * (WIDTH - 1) as f32).max(0.0) + (dy * (rows - 1.0)).max(0.0);
+    x.mul_add(dx, y.mul_add(dy, S::f32s::splat(simd, corner)))
+}
+
 /// Loads records before they are needed, so that the processor waits for all at once.
 #[inline(always)]
-fn touch(records: &[Record], cells: &[u32]) {
+fn touch(chunks: &[Chunk], cells: &[u32]) {
     let mut sum = 0.0;
     for &i in cells {
-        let record = &records[i as usize];
+        let record = at(chunks, i);
         // In both of its cache lines.
         sum += record.planes[0][0] + record.level;
     }
@@ -253,11 +262,11 @@ struct Fragment<S: Simd> {
 impl<S: Simd> Walk<'_, S> {
     /// Composites cells whose order is not known behind what is there: by depth in every pixel.
     #[inline(always)]
-    pub(crate) fn add_sorted<const ORTHOGRAPHIC: bool>(&mut self, records: &[Record], run: &[u32]) {
+    pub(crate) fn add_sorted<const ORTHOGRAPHIC: bool>(&mut self, chunks: &[Chunk], run: &[u32]) {
         let mut masks = Vec::with_capacity(run.len());
         let mut blocks = 0;
         for &i in run {
-            let mask = self.blocks(&records[i as usize]);
+            let mask = self.blocks(at(chunks, i));
             blocks |= mask;
             masks.push(mask);
         }
@@ -272,7 +281,7 @@ impl<S: Simd> Walk<'_, S> {
                 if mask >> block & 1 == 0 {
                     continue;
                 }
-                let record = &records[i as usize];
+                let record = at(chunks, i);
                 let (x, y) = self.from(record);
                 let places = self.places(block, x, y);
                 if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch) {
@@ -313,20 +322,29 @@ fn sort<S: Simd>(fragments: &mut [Fragment<S>]) {
     };
     for &gap in gaps {
         for end in gap..fragments.len() {
+            let mut moved = fragments[end];
             let mut i = end;
             while i >= gap {
-                let (near, far) = (fragments[i - gap], fragments[i]);
-                let swap = near.depth.simd_gt(far.depth);
+                let near = fragments[i - gap];
+                let swap = near.depth.simd_gt(moved.depth);
                 if !swap.any_true() {
                     break;
                 }
-                fragments[i - gap].depth = swap.select(far.depth, near.depth);
-                fragments[i].depth = swap.select(near.depth, far.depth);
+                let far = Fragment { depth: swap.select(near.depth, moved.depth), color: [
+                    swap.select(near.color[0], moved.color[0]),
+                    swap.select(near.color[1], moved.color[1]),
+                    swap.select(near.color[2], moved.color[2]),
+                    swap.select(near.color[3], moved.color[3]),
+                ] };
+                moved.depth = swap.select(moved.depth, near.depth);
                 for k in 0..4 {
-                    fragments[i - gap].color[k] = swap.select(far.color[k], near.color[k]);
-                    fragments[i].color[k] = swap.select(near.color[k], far.color[k]);
+                    moved.color[k] = swap.select(moved.color[k], near.color[k]);
                 }
+                fragments[i] = far;
                 i -= gap;
+            }
+            if i < end {
+                fragments[i] = moved;
             }
         }
     }

@@ -1,0 +1,61 @@
+//! The stages of the CPU back end's tiles, one thread, on the procedural wing and, where its file is present, on the
+//! Blunt Fin. Cells are in centroid order, or sorted in every pixel.
+
+use std::path::Path;
+use std::time::Duration;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use tetlux_ingest::{ReadOptions, Split, read_tet_mesh};
+use tetlux_mesh::{TetMesh, procedural};
+use tetlux_render::Renderer;
+use tetlux_scene::{Backend, Order, Plan, SceneFile};
+
+const WING: &str = include_str!("../../scenes/wing.toml");
+const SCENES: [(&str, &str); 2] = [
+    ("blunt fin smooth", include_str!("../../scenes/bluntfin-smooth.toml")),
+    ("blunt fin spiky", include_str!("../../scenes/bluntfin-spiky.toml")),
+];
+
+fn stages(c: &mut Criterion, name: &str, mesh: &TetMesh, file: &str) {
+    let renderer = Renderer::new();
+    let file = SceneFile::parse(name, file).unwrap_or_else(|e| panic!("{e}"));
+    let mut scene = file.scene(mesh, 0).unwrap_or_else(|e| panic!("{e}"));
+    scene.method.backend = Backend::Cpu;
+    let mut group = c.benchmark_group(format!("tiles/{name}"));
+    group.sample_size(10).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));
+    for (order, names) in [(Order::Centroid, &["set up", "bin", "draw"][..]), (Order::Pixel, &["draw"])] {
+        scene.method.order = order;
+        let plan = Plan::new(&scene, mesh, renderer.device()).unwrap_or_else(|e| panic!("{e}"));
+        for stage in names {
+            group.bench_function(format!("{stage}, order {order}"), |b| {
+                b.iter_custom(|runs| {
+                    let frames = (0..runs).map(|_| renderer.render(&scene, mesh, &plan));
+                    let seconds = frames.map(|frame| {
+                        let frame = frame.unwrap_or_else(|e| panic!("{e}"));
+                        let found = frame.stages.iter().find(|s| s.name == *stage);
+                        found.map_or(0.0, |s| s.cpu.unwrap_or(s.wall))
+                    });
+                    Duration::from_secs_f64(seconds.sum())
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+fn wing(c: &mut Criterion) {
+    let wing = procedural::wing(1, 100_000);
+    let mesh = TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field]);
+    stages(c, "wing", &mesh.unwrap_or_else(|e| panic!("{e}")), WING);
+}
+
+fn blunt_fin(c: &mut Criterion) {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/tets/bluntfin_tets.vtu"));
+    if path.exists() {
+        let mesh = read_tet_mesh(path, &ReadOptions::default(), Split::default()).unwrap_or_else(|e| panic!("{e}"));
+        SCENES.into_iter().for_each(|(name, file)| stages(c, name, &mesh, file));
+    }
+}
+
+criterion_group!(benches, wing, blunt_fin);
+criterion_main!(benches);
