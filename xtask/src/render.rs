@@ -8,8 +8,8 @@ use tetlux_render::{Frame, Renderer, Stages};
 use tetlux_scene::Plan;
 
 use crate::input::{Input, SceneArgs};
-use crate::progress;
 use crate::report::{Report, create_folder};
+use crate::{progress, tables};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -57,7 +57,9 @@ pub(crate) fn render(input: &Input, renderer: &Renderer, announce: impl FnOnce(&
     let mut stages = Stages::default();
     let plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, renderer.device()))?;
     announce(&plan);
-    let mut frame = progress::during("rendering", || renderer.render(&input.scene, &input.mesh, &plan))?;
+    let tables = stages.run("tables", || tables::load(input, &plan))?;
+    let render = || renderer.render_with(&input.scene, &input.mesh, &plan, &tables);
+    let mut frame = progress::during("rendering", render)?;
     let mut all = stages.into_vec();
     all.append(&mut frame.stages);
     frame.stages = all;

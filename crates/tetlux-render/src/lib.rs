@@ -27,6 +27,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod adaptive;
 mod cell;
 mod cpu;
 mod device_mesh;
@@ -37,16 +38,21 @@ mod gpu;
 mod layout_tests;
 mod resources;
 mod stage;
+mod tables;
 
 pub use error::RenderError;
 pub use resources::Resources;
 pub use stage::{Stage, Stages};
+pub use tables::table_specs;
+
+use std::sync::Arc;
 
 use tetlux_image::Image;
 use tetlux_mesh::TetMesh;
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::Eye;
-use tetlux_scene::{Backend, Device, Integrator, Order, Plan, Scene};
+use tetlux_scene::{Backend, Classification, Device, Integrator, Order, Plan, Scene, TablePrecision};
+use tetlux_tables::{Table, TableKind, TableSpec};
 
 use crate::cell::Lens;
 use crate::device_mesh::DeviceMesh;
@@ -71,6 +77,13 @@ struct Job<'a> {
     weights: Weights,
     /// The cells to draw, nearest first.
     order: &'a [u32],
+    /// The piece that each is clipped to, where cells are drawn piece by piece; else empty.
+    entry_pieces: &'a [u32],
+    /// The tables of the integral.
+    tables: &'a [Arc<Table>],
+    table_precision: TablePrecision,
+    /// Factor from device lengths to those of the tables.
+    table_length: f32,
     /// Width and height in pixels.
     size: [u32; 2],
 }
@@ -98,12 +111,33 @@ impl Renderer {
         self.gpu.as_ref().map(gpu::Gpu::device)
     }
 
-    /// Renders a scene on a mesh as its plan says.
+    /// Renders a scene on a mesh as its plan says: by a method without tables.
     ///
     /// # Errors
     ///
-    /// No adapter where the plan wants one; a mesh or a picture over the device's limits; a driver that fails.
+    /// No adapter where the plan wants one; a mesh or a picture over the device's limits; a driver that fails; a table
+    /// that the method needs.
     pub fn render(&self, scene: &Scene, mesh: &TetMesh, plan: &Plan) -> Result<Frame, RenderError> {
+        self.render_with(scene, mesh, plan, &[])
+    }
+
+    /// The same by any method; `tables` are those that [`table_specs`] asks for, in any order.
+    ///
+    /// # Errors
+    ///
+    /// As [`Renderer::render`].
+    pub fn render_with(
+        &self,
+        scene: &Scene,
+        mesh: &TetMesh,
+        plan: &Plan,
+        tables: &[Arc<Table>],
+    ) -> Result<Frame, RenderError> {
+        let find = |spec: &TableSpec| {
+            let found = tables.iter().find(|table| table.spec() == spec).cloned();
+            found.ok_or_else(|| RenderError::NoTable { id: spec.id.clone() })
+        };
+        let tables = table_specs(scene, mesh, plan).iter().map(find).collect::<Result<Vec<_>, _>>()?;
         let mut stages = Stages::default();
         let view = &plan.view;
         let eye = if view.orthographic { Eye::Direction(view.forward) } else { Eye::Point(view.eye) };
@@ -122,7 +156,24 @@ impl Renderer {
             // The CPU back end has these two: the plan sees to it.
             _ => Weights::Direct,
         };
-        let job = Job { mesh: &device_mesh, lens, pieces: &pieces, weights, order: &order, size: view.size };
+        let clipped = plan.backend == Backend::Gpu && plan.classification == Classification::PostClip;
+        let (order, entry_pieces) = if clipped {
+            stages.run("clip", || adaptive::entries(mesh, &device_mesh, &pieces, view, &order))
+        } else {
+            (order, Vec::new())
+        };
+        let job = Job {
+            mesh: &device_mesh,
+            lens,
+            pieces: &pieces,
+            weights,
+            order: &order,
+            entry_pieces: &entry_pieces,
+            table_precision: plan.table_precision,
+            table_length: (1.0 / (device_mesh.scale * table_unit(&tables))) as f32,
+            tables: &tables,
+            size: view.size,
+        };
         let (pixels, resources) = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
@@ -133,4 +184,13 @@ impl Renderer {
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
         Ok(Frame { image, stages: stages.into_vec(), resources })
     }
+}
+
+/// The world length that is 1 in the tables' thickness.
+fn table_unit(tables: &[Arc<Table>]) -> f64 {
+    let largest = |table: &Arc<Table>| match &table.spec().kind {
+        TableKind::PreIntegrated { transfer, .. } => Some(transfer.max_length),
+        _ => None,
+    };
+    tables.iter().find_map(largest).unwrap_or(1.0)
 }

@@ -11,7 +11,7 @@ use toml::Spanned;
 use crate::file::{CameraSpec, NodeRange, TransferSource, UnitDistance};
 use crate::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneError,
-    SceneFile, Target,
+    SceneFile, TablePrecision, Target,
 };
 
 #[derive(Deserialize)]
@@ -98,6 +98,8 @@ struct MethodTable {
     #[serde(default)]
     classification: Classification,
     #[serde(default)]
+    table_precision: TablePrecision,
+    #[serde(default)]
     target: Target,
     max_error: Option<Spanned<f64>>,
 }
@@ -160,6 +162,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
             interpolation: method.interpolation,
             integrator: method.integrator,
             classification: method.classification,
+            table_precision: method.table_precision,
             target: method.target,
             max_error: max_error.unwrap_or(Method::default().max_error),
         },
