@@ -8,13 +8,14 @@ fn noise(at: vec2<u32>, entry: u32) -> f32 {
     return f32(((word >> 22u) ^ word) >> 8u) * (1.0 / 16777216.0);
 }
 
-// Alpha is rounded up with the probability that makes its mean right, and the colour goes with it.
-fn dithered(color: vec4<f32>, random: f32) -> vec4<f32> {
-    let steps = 255.0 * clamp(color.a, 0.0, 1.0);
-    let alpha = (floor(steps) + select(0.0, 1.0, fract(steps) > random)) / 255.0;
-    return vec4<f32>(color.rgb * (alpha / max(color.a, 1e-30)), alpha);
+// Alpha rounded up with the probability that makes its mean right.
+fn dithered(alpha: f32, random: f32) -> f32 {
+    let steps = 255.0 * clamp(alpha, 0.0, 1.0);
+    return (floor(steps) + select(0.0, 1.0, fract(steps) > random)) / 255.0;
 }
 
+// The colour is not yet multiplied by alpha.
 fn stored(color: vec4<f32>, at: vec2<f32>, entry: u32) -> vec4<f32> {
-    return dithered(color, noise(vec2<u32>(at), entry));
+    let alpha = dithered(color.a, noise(vec2<u32>(at), entry));
+    return vec4<f32>(color.rgb / max(color.a, 1e-30), alpha);
 }

@@ -13,6 +13,15 @@ fn quantity_of(scalar: f32) -> Quantity {
     return classify(piece_at(scalar), scalar);
 }
 
+// As it is stored, and back.
+fn packed(value: Quantity) -> vec4<f32> {
+    return value;
+}
+
+fn unpacked(stored: vec4<f32>) -> Quantity {
+    return stored;
+}
+
 fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>) -> Linear {
     let c = array<vec4<f32>, 4>(quantity_of(s.x), quantity_of(s.y), quantity_of(s.z), quantity_of(s.w));
     let e1 = v[1].frame - v[0].frame;

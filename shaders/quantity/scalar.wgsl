@@ -11,6 +11,15 @@ fn quantity_of(scalar: f32) -> Quantity {
     return scalar;
 }
 
+// As it is stored, and back.
+fn packed(value: Quantity) -> vec4<f32> {
+    return vec4<f32>(value, 0.0, 0.0, 0.0);
+}
+
+fn unpacked(stored: vec4<f32>) -> Quantity {
+    return stored.x;
+}
+
 fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>) -> Linear {
     return Linear(
         vec4<f32>(cell.gradient.xyz, reference.scalar),

@@ -27,14 +27,16 @@ macro_rules! modules {
 
 /// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
 pub const MODULES: &[(&str, &str)] = modules! {
-    lib { cell mesh mesh_buffers published ray segment silhouette span symmetric transfer view }
-    quantity { color scalar }
+    lib { cell lookup mesh mesh_buffers plane published ray segment silhouette span symmetric thick transfer view volume }
     data { cell point }
-    geometry { ray }
-    shading { post_exact vertex }
-    output { dither plain }
-    weights { average direct linear symmetric }
-    stages { draw project }
+    geometry { ray thick }
+    interpolation { perspective screen_linear }
+    output { dither plain straight }
+    quantity { color scalar }
+    shading { post_clip post_exact preint preint_log preint_q vertex }
+    source { computed stored }
+    weights { average direct linear psi q symmetric }
+    stages { decompose draw project }
 };
 
 /// An axis and the module that stands for it.
@@ -42,11 +44,13 @@ pub type Choice = (&'static str, &'static str);
 
 /// The module of every axis that a scene takes unless told otherwise.
 pub const DEFAULTS: &[Choice] = &[
-    ("quantity", "quantity::scalar"),
     ("data", "data::point"),
     ("geometry", "geometry::ray"),
-    ("shading", "shading::post_exact"),
+    ("interpolation", "interpolation::perspective"),
     ("output", "output::plain"),
+    ("quantity", "quantity::scalar"),
+    ("shading", "shading::post_exact"),
+    ("source", "source::stored"),
     ("weights", "weights::direct"),
 ];
 
@@ -231,6 +235,9 @@ mod tests {
     fn with_companions(axis: &'static str, name: &'static str) -> Vec<Choice> {
         let others: &[Choice] = match name {
             "shading::vertex" => &[("quantity", "quantity::color")],
+            "interpolation::perspective" | "interpolation::screen_linear" | "source::stored" | "source::computed" => {
+                &[("geometry", "geometry::thick")]
+            }
             "quantity::color" => &[("shading", "shading::vertex")],
             _ => &[],
         };

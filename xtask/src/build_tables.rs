@@ -10,8 +10,8 @@ use tetlux_tables::{
     Manifest, Precision, Store, StoredTable, Table, TableSpec, accuracy, error_picture, measure, value_picture,
 };
 
-use crate::progress;
 use crate::report::create_folder;
+use crate::{progress, tables};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -50,7 +50,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.md")]
     accuracy: Option<PathBuf>,
     /// Folder of the tables
-    #[arg(long, value_name = "FOLDER", default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../tables"))]
+    #[arg(long, value_name = "FOLDER", default_value = tables::FOLDER)]
     folder: PathBuf,
 }
 

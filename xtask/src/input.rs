@@ -8,7 +8,7 @@ use tetlux_ingest::{CacheOutcome, TetMesh};
 use tetlux_mesh::procedural;
 use tetlux_scene::{
     Backend, CellProjection, Classification, FieldSpec, Integrator, Interpolation, Order, Projection, Scene, SceneFile,
-    Target, TransferSource, UnitDistance,
+    TablePrecision, Target, TransferSource, UnitDistance,
 };
 
 use crate::mesh_args::MeshArgs;
@@ -57,18 +57,21 @@ pub(crate) struct SceneArgs {
     /// auto, none, centroid or pixel
     #[arg(long, value_name = "NAME")]
     pub(crate) order: Option<Order>,
-    /// How cells become fragments: auto or pt
+    /// How cells become fragments: auto, pt or gator
     #[arg(long, value_name = "NAME")]
     pub(crate) projection: Option<CellProjection>,
-    /// How fragments come by their segments: auto or ray
+    /// How fragments come by their segments: auto, ray, perspective or screen-linear
     #[arg(long, value_name = "NAME")]
     pub(crate) interpolation: Option<Interpolation>,
-    /// auto, average, linear, direct or symmetric
+    /// auto, average, linear, psi, q, direct, symmetric, preint, preint-log or preint-q
     #[arg(long, value_name = "NAME")]
     pub(crate) integrator: Option<Integrator>,
-    /// auto, vertex or post-exact
+    /// auto, vertex, post-exact or post-clip
     #[arg(long, value_name = "NAME")]
     pub(crate) classification: Option<Classification>,
+    /// Format of tables: auto, u8, u16, f16 or f32
+    #[arg(long, value_name = "NAME")]
+    pub(crate) table_precision: Option<TablePrecision>,
     /// auto, rgba8, rgba8-dither, rgba16f or rgba32f
     #[arg(long, value_name = "NAME")]
     pub(crate) target: Option<Target>,
@@ -198,6 +201,7 @@ impl SceneArgs {
         method.interpolation = self.interpolation.unwrap_or(method.interpolation);
         method.integrator = self.integrator.unwrap_or(method.integrator);
         method.classification = self.classification.unwrap_or(method.classification);
+        method.table_precision = self.table_precision.unwrap_or(method.table_precision);
         method.target = self.target.unwrap_or(method.target);
         method.max_error = self.max_error.unwrap_or(method.max_error);
         Ok(())

@@ -12,6 +12,7 @@ mod mesh_args;
 mod progress;
 mod render;
 mod report;
+mod tables;
 mod test;
 
 use std::process::ExitCode;

@@ -8,8 +8,8 @@ use tetlux_render::{Frame, Model, Renderer, Stages};
 use tetlux_scene::Plan;
 
 use crate::input::{Input, SceneArgs};
-use crate::progress;
 use crate::report::{Report, create_folder};
+use crate::{progress, tables};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -57,7 +57,10 @@ pub(crate) fn render(input: &Input, renderer: &Renderer, announce: impl FnOnce(&
     let mut stages = Stages::default();
     let plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, renderer.device()))?;
     announce(&plan);
-    let mut frame = progress::during("rendering", || renderer.render(&input.scene, &Model::new(&input.mesh), &plan))?;
+    let tables = stages.run("tables", || tables::load(input, &plan))?;
+    let model = Model::new(&input.mesh);
+    let render = || renderer.render_with(&input.scene, &model, &plan, &tables);
+    let mut frame = progress::during("rendering", render)?;
     let mut all = stages.into_vec();
     all.append(&mut frame.stages);
     frame.stages = all;

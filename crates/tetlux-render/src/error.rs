@@ -42,6 +42,14 @@ pub enum RenderError {
         /// What the driver said.
         reason: String,
     },
+    /// The method looks values up in a table that was not given.
+    #[error(
+        "the integrator needs the table \"{id}\", which was not given: hand over every table that table_specs names"
+    )]
+    NoTable {
+        /// The name in its specification.
+        id: String,
+    },
     /// A shader could not be put together.
     #[error(transparent)]
     Shader(#[from] ComposeError),

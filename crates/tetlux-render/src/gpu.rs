@@ -3,6 +3,7 @@
 pub(crate) mod frame;
 mod picture;
 pub(crate) mod pipelines;
+pub(crate) mod tables;
 pub(crate) mod variant;
 
 use std::collections::HashMap;
@@ -31,7 +32,7 @@ struct Open {
 }
 
 /// What is used where the adapter has it, beyond what every device can do.
-const FEATURES: wgpu::Features = wgpu::Features::FLOAT32_BLENDABLE;
+const FEATURES: wgpu::Features = wgpu::Features::FLOAT32_BLENDABLE.union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM);
 
 impl Gpu {
     /// The best adapter: one that blends f32, hardware, discrete.
@@ -45,14 +46,15 @@ impl Gpu {
                 wgpu::DeviceType::VirtualGpu | wgpu::DeviceType::Other => 2,
                 wgpu::DeviceType::Cpu => 3,
             };
-            (!adapter.features().contains(FEATURES), kind)
+            (!adapter.features().contains(wgpu::Features::FLOAT32_BLENDABLE), kind)
         };
         let adapter = adapters.into_iter().min_by_key(rank)?;
         let info = adapter.get_info();
         let device = Device {
             name: format!("{} ({})", info.name, info.backend),
             software: info.device_type == wgpu::DeviceType::Cpu,
-            blends_f32: adapter.features().contains(FEATURES),
+            blends_f32: adapter.features().contains(wgpu::Features::FLOAT32_BLENDABLE),
+            norm16: adapter.features().contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM),
         };
         Some(Gpu { adapter, device, open: OnceLock::new(), pipelines: Mutex::default() })
     }
@@ -131,6 +133,7 @@ impl Gpu {
             ("the mesh's points", size_of_val(&job.mesh.points[..]) as u64, "bytes", binding),
             ("the mesh's cells", size_of_val(&job.mesh.cells[..]) as u64, "bytes", binding),
             ("the transfer function", size_of_val(job.pieces) as u64, "bytes", binding),
+            ("the order of the cells", size_of_val(job.order) as u64, "bytes", binding),
             ("the picture", u64::from(job.size[0].max(job.size[1])), "pixels a side", side),
             ("the picture", pixels * 16 + 256 * u64::from(job.size[1]), "bytes", limits.max_buffer_size),
         ] {

@@ -27,6 +27,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod adaptive;
 #[cfg(test)]
 mod cell;
 mod device_mesh;
@@ -40,21 +41,23 @@ mod model;
 mod order;
 mod resources;
 mod stage;
+mod tables;
 mod tiles;
 
 pub use error::RenderError;
 pub use model::Model;
 pub use resources::Resources;
 pub use stage::{Stage, Stages};
+pub use tables::table_specs;
 
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use tetlux_image::Image;
-use tetlux_optics::Classification;
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::{OrderReport, Orderer};
-use tetlux_scene::{Backend, Device, Integrator, Plan, Scene};
+use tetlux_scene::{Backend, Classification, Device, Integrator, Plan, Scene, TablePrecision};
+use tetlux_tables::{Table, TableKind, TableSpec};
 
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::{DeviceView, Lens};
@@ -87,6 +90,13 @@ struct Job<'a> {
     groups: &'a [Range<u32>],
     /// Largest error of a pixel that is allowed.
     max_error: f64,
+    /// The piece that each is clipped to, where cells are drawn piece by piece; else empty.
+    entry_pieces: &'a [u32],
+    /// The tables of the integral.
+    tables: &'a [Arc<Table>],
+    table_precision: TablePrecision,
+    /// Factor from device lengths to those of the tables.
+    table_length: f32,
     /// Width and height in pixels.
     size: [u32; 2],
 }
@@ -115,23 +125,52 @@ impl Renderer {
         self.gpu.as_ref().map(gpu::Gpu::device)
     }
 
-    /// Renders a scene on a mesh as its plan says.
+    /// Renders a scene on a mesh as its plan says: by a method without tables.
     ///
     /// # Errors
     ///
-    /// No adapter where the plan wants one; a mesh or a picture over the device's limits; a driver that fails.
+    /// No adapter where the plan wants one; a mesh or a picture over the device's limits; a driver that fails; a table
+    /// that the method needs.
     pub fn render(&self, scene: &Scene, model: &Model, plan: &Plan) -> Result<Frame, RenderError> {
+        self.render_with(scene, model, plan, &[])
+    }
+
+    /// The same by any method; `tables` are those that [`table_specs`] asks for, in any order.
+    ///
+    /// # Errors
+    ///
+    /// As [`Renderer::render`].
+    pub fn render_with(
+        &self,
+        scene: &Scene,
+        model: &Model,
+        plan: &Plan,
+        tables: &[Arc<Table>],
+    ) -> Result<Frame, RenderError> {
+        let find = |spec: &TableSpec| {
+            let found = tables.iter().find(|table| table.spec() == spec).cloned();
+            found.ok_or_else(|| RenderError::NoTable { id: spec.id.clone() })
+        };
+        let tables = table_specs(scene, model.mesh(), plan).iter().map(find).collect::<Result<Vec<_>, _>>()?;
         let mut stages = Stages::default();
         let (mesh, view) = (model.mesh(), &plan.view);
-        let order = order::order(&self.orderer, model, plan, &mut stages);
+        let mut order = order::order(&self.orderer, model, plan, &mut stages);
         let device_mesh = stages.run("prepare", || DeviceMesh::new(mesh, &scene.scalar));
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
-        let Classification::OneField(transfer) = &scene.classification else { return Err(RenderError::Bivariate) };
+        let tetlux_optics::Classification::OneField(transfer) = &scene.classification else { return Err(RenderError::Bivariate) };
         let pieces = pieces(transfer, scene.scalar.range, 1.0 / (scene.unit_distance * device_mesh.scale));
         let weights = match plan.integrator {
             Integrator::Average => Weights::Average,
             // The CPU back end has these two: the plan sees to it.
             _ => Weights::Direct,
+        };
+        let clipped = plan.backend == Backend::Gpu && plan.classification == Classification::PostClip;
+        let (cells, entry_pieces) = if clipped {
+            // Pieces of cells take the place of cells: groups are composited as they come.
+            order.groups.clear();
+            stages.run("clip", || adaptive::entries(mesh, &device_mesh, &pieces, view, &order.cells))
+        } else {
+            (std::mem::take(&mut order.cells), Vec::new())
         };
         let job = Job {
             mesh: &device_mesh,
@@ -139,19 +178,32 @@ impl Renderer {
             eye: EyeSpace::new(view, mesh, &device_mesh),
             pieces: &pieces,
             weights,
-            order: &order.cells,
+            order: &cells,
             groups: &order.groups,
             max_error: scene.method.max_error,
+            entry_pieces: &entry_pieces,
+            table_precision: plan.table_precision,
+            table_length: (1.0 / (device_mesh.scale * table_unit(&tables))) as f32,
+            tables: &tables,
             size: view.size,
         };
         let (pixels, resources) = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
                 let pixels = tiles::draw(&job, &mut stages);
-                (pixels, Resources { cells: order.cells.len(), ..Resources::default() })
+                (pixels, Resources { cells: cells.len(), ..Resources::default() })
             }
         };
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
         Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report })
     }
+}
+
+/// The world length that is 1 in the tables' thickness.
+fn table_unit(tables: &[Arc<Table>]) -> f64 {
+    let largest = |table: &Arc<Table>| match &table.spec().kind {
+        TableKind::PreIntegrated { transfer, .. } => Some(transfer.max_length),
+        _ => None,
+    };
+    tables.iter().find_map(largest).unwrap_or(1.0)
 }

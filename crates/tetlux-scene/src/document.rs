@@ -14,7 +14,7 @@ use toml::Spanned;
 use crate::file::CameraSpec;
 use crate::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneError,
-    SceneFile, Target,
+    SceneFile, TablePrecision, Target,
 };
 use light::LightTable;
 use transfer::Transfer;
@@ -93,6 +93,8 @@ struct MethodTable {
     #[serde(default)]
     classification: Classification,
     #[serde(default)]
+    table_precision: TablePrecision,
+    #[serde(default)]
     target: Target,
     max_error: Option<Spanned<f64>>,
 }
@@ -157,6 +159,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
             interpolation: method.interpolation,
             integrator: method.integrator,
             classification: method.classification,
+            table_precision: method.table_precision,
             target: method.target,
             max_error: max_error.unwrap_or(Method::default().max_error),
         },

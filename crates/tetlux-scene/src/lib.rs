@@ -24,13 +24,15 @@ mod error;
 mod file;
 mod method;
 mod plan;
+mod reason;
 mod view;
 
 pub use camera::{Camera, Projection};
 pub use error::SceneError;
 pub use file::{CameraSpec, FieldSpec, NodeRange, SceneFile, TransferSource, UnitDistance};
 pub use method::{
-    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Target, UnknownName, parse_name,
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, TablePrecision, Target,
+    UnknownName, parse_name,
 };
 pub use plan::{Device, Plan, Skips};
 pub use view::View;

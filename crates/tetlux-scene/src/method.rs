@@ -75,6 +75,8 @@ named! {
         Auto,
         /// Projected tetrahedra, a compute stage before the draw: Shirley and Tuchman 1990.
         Pt,
+        /// The same in the vertex stage, one instance a tetrahedron: Wylie et al. 2002.
+        Gator,
     }
 }
 
@@ -86,6 +88,11 @@ named! {
         Auto,
         /// Each fragment finds its own segment from the planes of the cell's faces: exact whatever a rasteriser rounds.
         Ray,
+        /// Over the triangles of the published decomposition, front and back with each their own depth: Kraus, Qiao and
+        /// Ebert 2004, section 2.
+        Perspective,
+        /// Over the same triangles, linear in the picture: the artifact of the original algorithm.
+        ScreenLinear,
     }
 }
 
@@ -99,10 +106,20 @@ named! {
         Average,
         /// The linear closed form as published, which is not stable: Williams, Max and Stein 1998.
         Linear,
+        /// Psi looked up in a table, 512 x 512 over x/(1+x), as published: Moreland and Angel 2004.
+        Psi,
+        /// The mean depth of the visible emission looked up, 128 x 128, opacity computed: error 4.7e-5.
+        Q,
         /// Linear luminance and extinction, evaluated directly without a table: relative error 1e-5.
         Direct,
         /// The same without division: relative error 1e-5.
         Symmetric,
+        /// Pre-integrated over both scalars and the thickness, equal steps: Röttger, Kraus and Ertl 2000.
+        Preint,
+        /// The same, the thickness in doubling steps: Kraus, Qiao and Ebert 2004, equation 1.
+        PreintLog,
+        /// Pre-integrated with exact opacity, colour / alpha stored.
+        PreintQ,
     }
 }
 
@@ -117,6 +134,26 @@ named! {
         Vertex,
         /// After interpolation, split exactly at the transfer function's control points.
         PostExact,
+        /// After interpolation, each cell clipped to every piece of the transfer function that it meets and drawn once a
+        /// piece: Moreland and Angel 2004, section 3.2.
+        PostClip,
+    }
+}
+
+named! {
+    /// The format of the texels of tables: Kraus, Qiao and Ebert 2004, section 3.
+    TablePrecision {
+        /// The plan chooses.
+        #[default]
+        Auto,
+        /// 8 bits, scaled to the range of values.
+        U8,
+        /// 16 bits, scaled to the range of values.
+        U16,
+        /// Half precision.
+        F16,
+        /// Single precision.
+        F32,
     }
 }
 
@@ -152,6 +189,8 @@ pub struct Method {
     pub integrator: Integrator,
     /// Where scalars become luminance and extinction.
     pub classification: Classification,
+    /// The format of tables, where the integral has one.
+    pub table_precision: TablePrecision,
     /// The format of the picture while it is composited.
     pub target: Target,
     /// Largest error of a pixel's colour or alpha, linear, that `compare` accepts.
@@ -167,10 +206,23 @@ impl Default for Method {
             interpolation: Interpolation::Auto,
             integrator: Integrator::Auto,
             classification: Classification::Auto,
+            table_precision: TablePrecision::Auto,
             target: Target::Auto,
             // A quarter of an 8-bit step.
             max_error: 1e-3,
         }
+    }
+}
+
+impl Integrator {
+    /// Whether it looks values up in a table.
+    pub fn uses_table(self) -> bool {
+        matches!(self, Integrator::Psi | Integrator::Q) || self.is_pre_integrated()
+    }
+
+    /// Whether its tables hold the transfer function.
+    pub fn is_pre_integrated(self) -> bool {
+        matches!(self, Integrator::Preint | Integrator::PreintLog | Integrator::PreintQ)
     }
 }
 
@@ -189,6 +241,33 @@ impl Method {
             && let Some(what) = self.gpu_only()
         {
             return Some(format!("{what} is a method of graphics adapters: use --backend gpu"));
+        }
+        if self.integrator.is_pre_integrated() && self.classification == Classification::Vertex {
+            return Some(format!(
+                "integrator \"{}\" looks up scalars, and classification \"vertex\" leaves none: use average, linear, psi, q, \
+                 direct or symmetric",
+                self.integrator
+            ));
+        }
+        if self.integrator.is_pre_integrated() && self.classification == Classification::PostClip {
+            return Some(format!(
+                "integrator \"{}\" has every piece of the transfer function in its table: classification \"post-clip\" \
+                 has nothing to clip; use post-exact",
+                self.integrator
+            ));
+        }
+        if self.projection == CellProjection::Gator && self.interpolation == Interpolation::Ray {
+            return Some(
+                "projection \"gator\" draws the triangles of the published decomposition, over which interpolation \
+                 \"ray\" has nothing to interpolate: use perspective or screen-linear, or projection pt"
+                    .into(),
+            );
+        }
+        if self.table_precision != TablePrecision::Auto
+            && self.integrator != Integrator::Auto
+            && !self.integrator.uses_table()
+        {
+            return Some(format!("integrator \"{}\" has no table: --table-precision says nothing", self.integrator));
         }
         if self.order == Order::Pixel
             && let Some(what) = self.gpu_only()
@@ -214,20 +293,27 @@ impl Method {
         if !matches!(self.classification, Classification::Auto | Classification::PostExact) {
             return Some(format!("classification \"{}\"", self.classification));
         }
+        if self.table_precision != TablePrecision::Auto {
+            return Some(format!("table precision \"{}\"", self.table_precision));
+        }
         if !matches!(self.target, Target::Auto | Target::Rgba32f) {
             return Some(format!("target \"{}\"", self.target));
         }
         None
     }
 
-    /// The same with every axis decided that depends on the others alone: all but back end, order and target.
+    /// The same with every axis decided that depends on the others alone: not those that depend on the adapter or the
+    /// scene.
     pub(crate) fn decided(&self) -> Method {
         let mut method = *self;
         if method.projection == CellProjection::Auto {
             method.projection = CellProjection::Pt;
         }
         if method.interpolation == Interpolation::Auto {
-            method.interpolation = Interpolation::Ray;
+            method.interpolation = match method.projection {
+                CellProjection::Gator => Interpolation::Perspective,
+                CellProjection::Auto | CellProjection::Pt => Interpolation::Ray,
+            };
         }
         if method.integrator == Integrator::Auto {
             method.integrator = Integrator::Direct;
@@ -260,7 +346,53 @@ mod tests {
             assert_eq!(order.to_string().parse(), Ok(order));
         }
         assert_eq!(Backend::Gpu.to_string(), "gpu");
+        assert_eq!(Integrator::PreintLog.to_string(), "preint-log");
+        assert_eq!(Target::Rgba8Dither.to_string(), "rgba8-dither");
+        assert_eq!(TablePrecision::F16.to_string(), "f16");
         let error = "nearest".parse::<Integrator>().unwrap_err().to_string();
         assert!(error.contains("nearest") && error.contains("direct") && error.contains("average"), "{error}");
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_its_reason() {
+        let refused = |change: fn(&mut Method)| {
+            let mut method = Method::default();
+            change(&mut method);
+            method.refusal()
+        };
+        assert_eq!(refused(|_| ()), None);
+        for (change, words) in [
+            (
+                (|m| (m.integrator, m.classification) = (Integrator::Preint, Classification::Vertex))
+                    as fn(&mut Method),
+                ["preint", "vertex"],
+            ),
+            (
+                |m| (m.integrator, m.classification) = (Integrator::PreintQ, Classification::PostClip),
+                ["preint-q", "clip"],
+            ),
+            (
+                |m| (m.projection, m.interpolation) = (CellProjection::Gator, Interpolation::Ray),
+                ["gator", "perspective"],
+            ),
+            (|m| (m.backend, m.target) = (Backend::Cpu, Target::Rgba8), ["rgba8", "--backend gpu"]),
+            (|m| (m.backend, m.projection) = (Backend::Cpu, CellProjection::Pt), ["pt", "--backend gpu"]),
+            (|m| (m.order, m.integrator) = (Order::Pixel, Integrator::Q), ["pixel", "\"q\""]),
+            (|m| (m.backend, m.order) = (Backend::Gpu, Order::Pixel), ["pixel", "cpu"]),
+            (|m| (m.integrator, m.table_precision) = (Integrator::Direct, TablePrecision::U8), ["direct", "table"]),
+        ] {
+            let reason = refused(change).unwrap_or_else(|| panic!("{words:?} is not refused"));
+            assert!(words.iter().all(|word| reason.contains(word)), "{words:?}: {reason}");
+        }
+    }
+
+    #[test]
+    fn nothing_decided_is_left_open_or_refused() {
+        for &projection in CellProjection::ALL {
+            let decided = Method { projection, ..Method::default() }.decided();
+            assert_eq!(decided.refusal(), None);
+            assert!(decided.projection != CellProjection::Auto && decided.interpolation != Interpolation::Auto);
+            assert!(decided.integrator != Integrator::Auto && decided.classification != Classification::Auto);
+        }
     }
 }

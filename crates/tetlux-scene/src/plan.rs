@@ -5,8 +5,10 @@ use rayon::prelude::*;
 use tetlux_mesh::TetMesh;
 use tetlux_optics::widget::Rectangle;
 
+use crate::reason::{of_classification, of_integrator, of_interpolation, of_projection, of_table_precision, of_target};
 use crate::{
-    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError, Target, View,
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError,
+    TablePrecision, Target, View,
 };
 
 /// What a plan needs to know of a graphics adapter.
@@ -18,6 +20,8 @@ pub struct Device {
     pub software: bool,
     /// It blends into 32-bit floating-point targets.
     pub blends_f32: bool,
+    /// It has textures of 16-bit normalised integers.
+    pub norm16: bool,
 }
 
 /// Cells that are not drawn, by the first reason that holds.
@@ -48,6 +52,8 @@ pub struct Plan {
     pub integrator: Integrator,
     /// Where scalars become luminance and extinction.
     pub classification: Classification,
+    /// The format of tables, where the integral has one.
+    pub table_precision: TablePrecision,
     /// The format of the picture while it is composited.
     pub target: Target,
     /// The camera resolved.
@@ -78,10 +84,13 @@ impl Plan {
         let (backend, backend_reason) = choose_backend(&scene.method, device)?;
         let (order, order_reason) = choose_order(scene);
         let (target, target_reason) = choose_target(scene.method.target, device);
-        let decided = Method { backend, order, target, ..scene.method.decided() };
+        let (table_precision, fallback) = choose_table_precision(scene.method.table_precision, device);
+        let decided = Method { backend, order, table_precision, target, ..scene.method.decided() };
+        let tables = backend == Backend::Gpu && decided.integrator.uses_table();
+        warnings.extend(fallback.filter(|_| tables));
         warnings.extend(doubts_of(order).map(String::from));
         if backend == Backend::Gpu && target != Target::Rgba32f {
-            warnings.push(format!("target {target}: {}", error_of(target)));
+            warnings.push(format!("target {target}: {}", of_target(target)));
         }
         let (cells, skips) = visible_cells(scene, mesh, &view);
         if skips.no_data > 0 {
@@ -90,13 +99,16 @@ impl Plan {
         let mut reasons =
             vec![("backend", format!("{backend}: {backend_reason}")), ("order", format!("{order}: {order_reason}"))];
         if backend == Backend::Gpu {
-            reasons.push(("projection", says(decided.projection, of_projection(decided.projection))));
-            reasons.push(("interpolation", says(decided.interpolation, of_interpolation(decided.interpolation))));
+            reasons.push(("projection", says(decided.projection, of_projection)));
+            reasons.push(("interpolation", says(decided.interpolation, of_interpolation)));
         }
-        reasons.push(("integrator", says(decided.integrator, of_integrator(decided.integrator))));
+        reasons.push(("integrator", says(decided.integrator, of_integrator)));
+        if tables {
+            reasons.push(("table", says(table_precision, of_table_precision)));
+        }
         if backend == Backend::Gpu {
-            reasons.push(("classification", says(decided.classification, of_classification(decided.classification))));
-            reasons.push(("target", says(target, &target_reason)));
+            reasons.push(("classification", says(decided.classification, of_classification)));
+            reasons.push(("target", format!("{target}: {target_reason}")));
         }
         reasons.push((
             "cells",
@@ -118,6 +130,7 @@ impl Plan {
             interpolation,
             integrator,
             classification,
+            table_precision,
             target,
             view,
             cells,
@@ -129,45 +142,8 @@ impl Plan {
 }
 
 /// A choice and its reason.
-fn says(choice: impl std::fmt::Display, reason: &str) -> String {
-    format!("{choice}: {reason}")
-}
-
-fn of_projection(projection: CellProjection) -> &'static str {
-    match projection {
-        CellProjection::Auto | CellProjection::Pt => "a compute stage projects each cell once",
-    }
-}
-
-fn of_interpolation(interpolation: Interpolation) -> &'static str {
-    match interpolation {
-        Interpolation::Auto | Interpolation::Ray => "every fragment finds its own segment: exact",
-    }
-}
-
-fn of_integrator(integrator: Integrator) -> &'static str {
-    match integrator {
-        Integrator::Auto | Integrator::Direct => "linear luminance and extinction, relative error 1e-5, no table",
-        Integrator::Average => "mean luminance and extinction: colour is approximate",
-        Integrator::Linear => "linear luminance and extinction as published: not stable",
-        Integrator::Symmetric => "linear luminance and extinction, relative error 1e-5, no division",
-    }
-}
-
-fn of_classification(classification: Classification) -> &'static str {
-    match classification {
-        Classification::Auto | Classification::PostExact => "split at the function's control points",
-        Classification::Vertex => "at the vertices: what lies between their scalars is lost",
-    }
-}
-
-fn error_of(target: Target) -> &'static str {
-    match target {
-        Target::Auto | Target::Rgba32f => "off by 5e-7 after a thousand cells",
-        Target::Rgba8 => "every cell is rounded to 1/255, and thin ones vanish",
-        Target::Rgba8Dither => "every cell is rounded to 1/255 at random, right in the mean",
-        Target::Rgba16f => "off by up to 5e-2 after a thousand cells",
-    }
+fn says<T: Copy + std::fmt::Display>(choice: T, reason: fn(T) -> &'static str) -> String {
+    format!("{choice}: {}", reason(choice))
 }
 
 impl std::fmt::Display for Plan {
@@ -254,7 +230,19 @@ fn choose_target(asked: Target, device: Option<&Device>) -> (Target, String) {
     };
     let why =
         if target == Target::Rgba16f && asked == Target::Auto { "the adapter blends no 32-bit floats; " } else { "" };
-    (target, format!("{why}{}", error_of(target)))
+    (target, format!("{why}{}", of_target(target)))
+}
+
+/// The format of tables, and a warning if it is not what is asked for.
+fn choose_table_precision(asked: TablePrecision, device: Option<&Device>) -> (TablePrecision, Option<String>) {
+    match (asked, device) {
+        (TablePrecision::Auto, _) => (TablePrecision::F32, None),
+        (TablePrecision::U16, Some(d)) if !d.norm16 => (
+            TablePrecision::F32,
+            Some(format!("{} has no textures of 16-bit integers: tables are in single precision instead", d.name)),
+        ),
+        (asked, _) => (asked, None),
+    }
 }
 
 fn choose_order(scene: &Scene) -> (Order, String) {
@@ -375,7 +363,7 @@ mod tests {
     const GREY: [f64; 3] = [0.5; 3];
 
     fn device(software: bool, blends_f32: bool) -> Device {
-        Device { name: "adapter".into(), software, blends_f32 }
+        Device { name: "adapter".into(), software, blends_f32, norm16: false }
     }
 
     #[test]
@@ -451,6 +439,21 @@ mod tests {
         assert!(error.contains("symmetric") && error.contains("--backend gpu"), "{error}");
         let sorted = Method { order: Order::Pixel, ..method };
         assert!(planned(sorted, Some(&software)).is_err());
+    }
+
+    #[test]
+    fn tables_of_a_format_that_the_adapter_lacks_are_singles_with_a_warning() {
+        let mesh = row(4);
+        let wanted = Method { table_precision: TablePrecision::U16, ..Method::default() };
+        let planned = |integrator| {
+            let method = Method { integrator, backend: Backend::Gpu, ..wanted };
+            Plan::new(&scene(&mesh, &[GREY], method), &mesh, Some(&device(false, true)))
+        };
+        let plan = planned(Integrator::Q).unwrap();
+        assert_eq!(plan.table_precision, TablePrecision::F32);
+        assert!(plan.warnings.iter().any(|w| w.contains("16-bit")), "{:?}", plan.warnings);
+        assert!(plan.to_string().contains("f32"), "{plan}");
+        assert!(planned(Integrator::Direct).is_err(), "there is no table");
     }
 
     #[test]

@@ -219,7 +219,7 @@ impl TableSpec {
             Self::default_q(),
             table("r", [192, 144, 1], TableKind::Q { design: Design::R }),
             table("qe", [128, 128, 1], TableKind::QPair),
-            table("psi", [512, 512, 1], TableKind::Psi),
+            Self::default_psi(),
             table("fb3d", [64, 64, 64], TableKind::FrontBack { max_extinction: 10.0, max_length: 1.0 }),
             table("gaussian", [256, 256, 1], TableKind::Gaussian { max_p: 10.0, max_t: 4.0 }),
             table("gaussian-bounded", [256, 256, 1], TableKind::GaussianBounded { max_t: 4.0 }),
@@ -237,6 +237,11 @@ impl TableSpec {
             size: [128, 128, 1],
             precision: Precision::F32,
         }
+    }
+
+    /// The published table of psi: 512 x 512, f32 (Moreland and Angel 2004).
+    pub fn default_psi() -> Self {
+        Self { id: "psi".to_owned(), kind: TableKind::Psi, size: [512, 512, 1], precision: Precision::F32 }
     }
 
     /// The default table called `id`.

@@ -7,7 +7,8 @@ use wgpu::util::DeviceExt;
 use super::Open;
 use super::picture::Picture;
 use super::pipelines::{CELL_BYTES, Pipelines};
-use super::variant::{Binding, Variant};
+use super::tables::{Lookup, binding_of, upload};
+use super::variant::{Binding, Geometry, Variant};
 use crate::{Job, Resources};
 
 /// Invocations a workgroup of the compute stages, as shaders/stages have them.
@@ -82,8 +83,28 @@ impl Maker<'_> {
             Binding::Cells => self.filled("cells", bytemuck::cast_slice(&job.mesh.cells), storage),
             Binding::CellScalars => self.filled("cell scalars", bytemuck::cast_slice(&job.mesh.cell_scalars), storage),
             Binding::Order => self.filled("order", bytemuck::cast_slice(job.order), storage),
+            Binding::EntryPieces => self.filled("pieces of cells", bytemuck::cast_slice(job.entry_pieces), storage),
         }
     }
+}
+
+/// The bind group of the tables, made.
+fn tables(make: &Maker, queue: &wgpu::Queue, layout: &wgpu::BindGroupLayout, job: &Job) -> wgpu::BindGroup {
+    let mut lookup = Lookup { low: [[0.0; 4]; 2], range: [[1.0; 4]; 2], length: [job.table_length, 0.0, 0.0, 0.0] };
+    let textures: Vec<_> = job
+        .tables
+        .iter()
+        .map(|table| {
+            let (texture, bytes) = upload(make.device, queue, table, job.table_precision, &mut lookup);
+            make.count(0, 1, bytes);
+            (binding_of(table), texture.create_view(&wgpu::TextureViewDescriptor::default()))
+        })
+        .collect();
+    let lookup = make.filled("lookup", bytemuck::bytes_of(&lookup), wgpu::BufferUsages::UNIFORM);
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    let textures = textures.iter().map(|(binding, view)| entry(*binding, wgpu::BindingResource::TextureView(view)));
+    let entries: Vec<_> = [entry(0, lookup.as_entire_binding())].into_iter().chain(textures).collect();
+    make.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("tables"), layout, entries: &entries })
 }
 
 /// Draws the picture; the error is what the driver said.
@@ -101,7 +122,9 @@ pub(super) fn draw(
     let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
     let scene = make.bind(&pipelines.scene, &scene);
 
-    let vertices = variant.geometry().vertices;
+    let tables = pipelines.tables.as_ref().map(|layout| tables(&make, queue, layout, job));
+
+    let Geometry { vertices, instanced, .. } = variant.geometry();
     let batch = batch_size(&device.limits(), vertices).min(cells.max(1));
     let projected = pipelines
         .compute
@@ -143,7 +166,14 @@ pub(super) fn draw(
         pass.set_pipeline(&pipelines.draw.pipeline);
         pass.set_bind_group(0, &scene, &[]);
         pass.set_bind_group(1, &make.bind(&pipelines.draw.batch, &buffers), &[]);
-        pass.draw(0..vertices * count, 0..1);
+        if let Some(tables) = &tables {
+            pass.set_bind_group(2, tables, &[]);
+        }
+        if instanced {
+            pass.draw(0..vertices, 0..count);
+        } else {
+            pass.draw(0..vertices * count, 0..1);
+        }
         drop(pass);
         load = wgpu::LoadOp::Load;
         remaining -= count;

@@ -12,6 +12,8 @@ pub(crate) const CELL_BYTES: u64 = 80;
 pub(super) struct Pipelines {
     /// What [`Variant::bindings`] names.
     pub(super) scene: wgpu::BindGroupLayout,
+    /// Tables and their decoding, if there are any.
+    pub(super) tables: Option<wgpu::BindGroupLayout>,
     pub(super) draw: Stage<wgpu::RenderPipeline>,
     /// The stage before it, if there is one.
     pub(super) compute: Option<Stage<wgpu::ComputePipeline>>,
@@ -54,10 +56,20 @@ impl Pipelines {
             .map(|binding| (binding as u32, any, if binding == Binding::View { uniform } else { storage }))
             .collect();
         let scene = layout("scene", &scene);
-        let pipeline_layout = |batch: &wgpu::BindGroupLayout| {
+        let tables = variant.tables();
+        let tables = (!tables.is_empty()).then(|| {
+            let sample_type = wgpu::TextureSampleType::Float { filterable: false };
+            let texture = |view_dimension| BindingType::Texture { sample_type, view_dimension, multisampled: false };
+            let binding = |dimension| if dimension == wgpu::TextureViewDimension::D2 { 1 } else { 2 };
+            let textures = tables.iter().map(|&t| (binding(t), ShaderStages::FRAGMENT, texture(t)));
+            let entries: Vec<_> = [(0, ShaderStages::FRAGMENT, uniform)].into_iter().chain(textures).collect();
+            layout("tables", &entries)
+        });
+        let pipeline_layout = |batch: &wgpu::BindGroupLayout, tables: Option<&wgpu::BindGroupLayout>| {
+            let layouts = [Some(&scene), Some(batch), tables];
             device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,
-                bind_group_layouts: &[Some(&scene), Some(batch)],
+                bind_group_layouts: &layouts[..2 + usize::from(tables.is_some())],
                 immediate_size: 0,
             })
         };
@@ -72,7 +84,7 @@ impl Pipelines {
                 let batch = layout("batch, written", &[(0, stage, uniform), (1, stage, writable)]);
                 let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                     label: Some(name),
-                    layout: Some(&pipeline_layout(&batch)),
+                    layout: Some(&pipeline_layout(&batch, None)),
                     module: &shader(name)?,
                     entry_point: None,
                     compilation_options: options(),
@@ -88,7 +100,7 @@ impl Pipelines {
         let module = shader("stages::draw")?;
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("draw"),
-            layout: Some(&pipeline_layout(&batch)),
+            layout: Some(&pipeline_layout(&batch, tables.as_ref())),
             vertex: wgpu::VertexState {
                 module: &module,
                 entry_point: Some("cover"),
@@ -101,7 +113,7 @@ impl Pipelines {
                 compilation_options: options(),
                 targets: &[Some(wgpu::ColorTargetState {
                     format: variant.format(),
-                    blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    blend: Some(variant.blend()),
                     write_mask: wgpu::ColorWrites::ALL,
                 })],
             }),
@@ -111,6 +123,6 @@ impl Pipelines {
             multiview_mask: None,
             cache: None,
         });
-        Ok(Pipelines { scene, draw: Stage { pipeline, batch }, compute })
+        Ok(Pipelines { scene, tables, draw: Stage { pipeline, batch }, compute })
     }
 }

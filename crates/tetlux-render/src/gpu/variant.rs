@@ -1,6 +1,6 @@
 //! Which shaders a picture needs, and what they bind: its method as composition.
 
-use tetlux_scene::{Classification, Integrator, Interpolation, Plan, Target};
+use tetlux_scene::{CellProjection, Classification, Integrator, Interpolation, Plan, Target};
 use tetlux_shaders::{Choice, DEFAULTS, choose};
 
 /// What makes one set of pipelines differ from another.
@@ -8,6 +8,7 @@ use tetlux_shaders::{Choice, DEFAULTS, choose};
 pub(crate) struct Variant {
     pub(crate) orthographic: bool,
     pub(crate) cell_data: bool,
+    pub(crate) projection: CellProjection,
     pub(crate) interpolation: Interpolation,
     pub(crate) integrator: Integrator,
     pub(crate) classification: Classification,
@@ -21,6 +22,8 @@ pub(crate) struct Geometry {
     pub(crate) compute: Option<&'static str>,
     /// Vertices a cell.
     pub(crate) vertices: u32,
+    /// Cells are instances of one draw, rather than all vertices numbered through.
+    pub(crate) instanced: bool,
 }
 
 /// A buffer of bind group 0, numbered as its binding.
@@ -32,6 +35,7 @@ pub(crate) enum Binding {
     Cells = 3,
     CellScalars = 4,
     Order = 5,
+    EntryPieces = 6,
 }
 
 impl Variant {
@@ -39,6 +43,7 @@ impl Variant {
         Variant {
             orthographic: plan.view.orthographic,
             cell_data,
+            projection: plan.projection,
             interpolation: plan.interpolation,
             integrator: plan.integrator,
             classification: plan.classification,
@@ -48,48 +53,95 @@ impl Variant {
 
     /// The modules that stand for the axes of the shaders.
     pub(crate) fn choices(&self) -> Vec<Choice> {
-        let (quantity, shading) = match self.classification {
-            Classification::Vertex => ("quantity::color", "shading::vertex"),
-            Classification::Auto | Classification::PostExact => ("quantity::scalar", "shading::post_exact"),
+        let quantity = match self.classification {
+            Classification::Vertex => "quantity::color",
+            _ => "quantity::scalar",
+        };
+        let shading = match (self.integrator, self.classification) {
+            (Integrator::Preint, _) => "shading::preint",
+            (Integrator::PreintLog, _) => "shading::preint_log",
+            (Integrator::PreintQ, _) => "shading::preint_q",
+            (_, Classification::Vertex) => "shading::vertex",
+            (_, Classification::PostClip) => "shading::post_clip",
+            (_, Classification::Auto | Classification::PostExact) => "shading::post_exact",
         };
         let weights = match self.integrator {
             Integrator::Average => "weights::average",
             Integrator::Linear => "weights::linear",
-            Integrator::Auto | Integrator::Direct => "weights::direct",
+            Integrator::Psi => "weights::psi",
+            Integrator::Q => "weights::q",
             Integrator::Symmetric => "weights::symmetric",
+            // Pre-integrated shading asks for no weights.
+            _ => "weights::direct",
         };
-        let geometry = match self.interpolation {
-            Interpolation::Auto | Interpolation::Ray => "geometry::ray",
+        let (geometry, interpolation) = match self.interpolation {
+            Interpolation::Auto | Interpolation::Ray => ("geometry::ray", "interpolation::perspective"),
+            Interpolation::Perspective => ("geometry::thick", "interpolation::perspective"),
+            Interpolation::ScreenLinear => ("geometry::thick", "interpolation::screen_linear"),
+        };
+        let source = match self.projection {
+            CellProjection::Gator => "source::computed",
+            CellProjection::Auto | CellProjection::Pt => "source::stored",
         };
         let data = if self.cell_data { "data::cell" } else { "data::point" };
-        let output = if self.target == Target::Rgba8Dither { "output::dither" } else { "output::plain" };
+        let output = match self.target {
+            Target::Rgba8 => "output::straight",
+            Target::Rgba8Dither => "output::dither",
+            Target::Auto | Target::Rgba16f | Target::Rgba32f => "output::plain",
+        };
         choose(
             DEFAULTS,
             &[
                 ("data", data),
                 ("geometry", geometry),
+                ("interpolation", interpolation),
                 ("output", output),
                 ("quantity", quantity),
                 ("shading", shading),
+                ("source", source),
                 ("weights", weights),
             ],
         )
     }
 
     pub(crate) fn geometry(&self) -> Geometry {
-        match self.interpolation {
-            Interpolation::Auto | Interpolation::Ray => Geometry { compute: Some("stages::project"), vertices: 6 },
+        match (self.projection, self.interpolation) {
+            (CellProjection::Gator, _) => Geometry { compute: None, vertices: 12, instanced: true },
+            (_, Interpolation::Auto | Interpolation::Ray) => {
+                Geometry { compute: Some("stages::project"), vertices: 6, instanced: false }
+            }
+            (_, Interpolation::Perspective | Interpolation::ScreenLinear) => {
+                Geometry { compute: Some("stages::decompose"), vertices: 12, instanced: false }
+            }
         }
     }
 
     /// The buffers of bind group 0 that the shaders read, ascending.
     pub(crate) fn bindings(&self) -> Vec<Binding> {
-        let mut bindings = vec![Binding::View, Binding::Pieces, Binding::Points, Binding::Cells];
+        let mut bindings = vec![Binding::View];
+        if !self.integrator.is_pre_integrated() {
+            bindings.push(Binding::Pieces);
+        }
+        bindings.extend([Binding::Points, Binding::Cells]);
         if self.cell_data {
             bindings.push(Binding::CellScalars);
         }
         bindings.push(Binding::Order);
+        if self.classification == Classification::PostClip {
+            bindings.push(Binding::EntryPieces);
+        }
         bindings
+    }
+
+    /// The axes of the tables that are bound, beside their `Lookup`; none: bind group 2 is not there.
+    pub(crate) fn tables(&self) -> &'static [wgpu::TextureViewDimension] {
+        use wgpu::TextureViewDimension::{D2, D3};
+        match self.integrator {
+            Integrator::Psi | Integrator::Q => &[D2],
+            Integrator::Preint | Integrator::PreintLog => &[D3],
+            Integrator::PreintQ => &[D2, D3],
+            _ => &[],
+        }
     }
 
     /// The format of the picture on the device.
@@ -98,6 +150,18 @@ impl Variant {
             Target::Rgba8 | Target::Rgba8Dither => wgpu::TextureFormat::Rgba8Unorm,
             Target::Rgba16f => wgpu::TextureFormat::Rgba16Float,
             Target::Auto | Target::Rgba32f => wgpu::TextureFormat::Rgba32Float,
+        }
+    }
+
+    /// How fragments are composited: colour is multiplied by alpha in the shader, or, for targets of 8 bits, here.
+    pub(crate) fn blend(&self) -> wgpu::BlendState {
+        let premultiplied = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
+        match self.target {
+            Target::Rgba8 | Target::Rgba8Dither => wgpu::BlendState {
+                color: wgpu::BlendComponent { src_factor: wgpu::BlendFactor::SrcAlpha, ..premultiplied.color },
+                ..premultiplied
+            },
+            Target::Auto | Target::Rgba16f | Target::Rgba32f => premultiplied,
         }
     }
 }

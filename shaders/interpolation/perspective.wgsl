@@ -1,0 +1,19 @@
+// Perspective interpolation: Kraus, Qiao and Ebert 2004, section 2. Values divided by depth, and inverse depth itself, are
+// linear in the picture; the front and the back end have each their own depth.
+import package::axes::quantity::{Quantity};
+import package::lib::span::{Segment};
+import package::lib::thick::{thickness};
+
+// What is interpolated of a value at a point of that inverse depth.
+fn carried(value: Quantity, inverse_depth: f32) -> Quantity {
+    return value * inverse_depth;
+}
+
+// What is interpolated of a vertex's extent: see lib::thick.
+fn carried_ends(ends: vec2<f32>, at: vec2<f32>) -> vec2<f32> {
+    return ends;
+}
+
+fn segment_between(front: Quantity, back: Quantity, ends: vec2<f32>, at: vec2<f32>) -> Segment {
+    return Segment(front / ends.x, back / (ends.x - ends.y), thickness(ends, at));
+}

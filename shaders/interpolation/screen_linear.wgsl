@@ -1,0 +1,19 @@
+// Linear interpolation over the picture of the values at both ends and of the thickness, as in the original algorithm
+// (Shirley and Tuchman 1990): wrong wherever a cell's depth varies.
+import package::axes::quantity::{Quantity};
+import package::lib::span::{Segment};
+import package::lib::thick::{thickness};
+
+// What is interpolated of a value at a point of that inverse depth.
+fn carried(value: Quantity, inverse_depth: f32) -> Quantity {
+    return value;
+}
+
+// What is interpolated of a vertex's extent: its thickness.
+fn carried_ends(ends: vec2<f32>, at: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(thickness(ends, at), 0.0);
+}
+
+fn segment_between(front: Quantity, back: Quantity, ends: vec2<f32>, at: vec2<f32>) -> Segment {
+    return Segment(front, back, ends.x);
+}
