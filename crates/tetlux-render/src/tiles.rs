@@ -44,7 +44,8 @@ pub(crate) fn draw(job: &Job, stages: &mut Stages) -> Vec<[f32; 4]> {
 fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> Vec<[f32; 4]> {
     let eye = &job.eye;
     let ramps: Vec<Ramp> = job.pieces.iter().map(Ramp::new).collect();
-    let brightest = job.pieces.iter().flat_map(|p| [p.low, p.high]).flat_map(|c| [c[0], c[1], c[2]]).fold(1.0, f32::max);
+    let brightest =
+        job.pieces.iter().flat_map(|p| [p.low, p.high]).flat_map(|c| [c[0], c[1], c[2]]).fold(1.0, f32::max);
     let light = Light {
         ramps: &ramps,
         model: job.weights,

@@ -9,6 +9,9 @@ use tetlux_optics::symmetric_f32::{
 };
 use tetlux_optics::transfer_f32::{Piece, Weights};
 
+#[cfg(test)]
+mod tests;
+
 /// A piece of the transfer function as the tiles need it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ramp {
@@ -152,14 +155,7 @@ fn add_medium<S: Simd>(
 
 /// Adds opacity `alpha` with the luminance at scalar `middle`, and its slope times `moment`.
 #[inline(always)]
-fn add<S: Simd>(
-    simd: S,
-    ramp: &Ramp,
-    alpha: S::f32s,
-    moment: S::f32s,
-    middle: S::f32s,
-    pixels: &mut Pixels<S>,
-) {
+fn add<S: Simd>(simd: S, ramp: &Ramp, alpha: S::f32s, moment: S::f32s, middle: S::f32s, pixels: &mut Pixels<S>) {
     let left = S::f32s::splat(simd, 1.0) - pixels[3];
     let weight = left * alpha;
     let first = middle.mul_add(weight, left * moment);

@@ -196,8 +196,7 @@ impl SetUp<'_> {
 
         // (b-a) x (c-a) of each face: both cells at a face find the same bits.
         let (e1, e2, e3) = (frame[1] - frame[0], frame[2] - frame[0], frame[3] - frame[0]);
-        let normals =
-            [(frame[2] - frame[1]).cross(frame[3] - frame[1]), e2.cross(e3), e1.cross(e3), e1.cross(e2)];
+        let normals = [(frame[2] - frame[1]).cross(frame[3] - frame[1]), e2.cross(e3), e1.cross(e3), e1.cross(e2)];
         let mut planes = [[splat(0.0); 4]; 4];
         for (face, [a, b, c]) in FACES.into_iter().enumerate() {
             planes[face] = self.plane(simd, normals[face], [eye[a], eye[b], eye[c]], origin, scale);
@@ -212,8 +211,7 @@ impl SetUp<'_> {
         let [s1, s2, s3] = [(s[1] - s[0]) * inverse, (s[2] - s[0]) * inverse, (s[3] - s[0]) * inverse];
         let sum = normals[1] * s1 - normals[2] * s2 + normals[3] * s3;
         let zero = splat(0.0);
-        let gradient =
-            Vector { x: tiny.select(zero, sum.x), y: tiny.select(zero, sum.y), z: tiny.select(zero, sum.z) };
+        let gradient = Vector { x: tiny.select(zero, sum.x), y: tiny.select(zero, sum.y), z: tiny.select(zero, sum.z) };
         let at = s[0] + dot(gradient, origin - eye[0]);
         let along = if self.eye.orthographic { gradient.z } else { dot(gradient, origin) - at };
         let scalar = [limited(gradient.x * scale), limited(gradient.y * scale), limited(at), limited(along)];

@@ -18,7 +18,8 @@ const COLUMNS: u32 = TILE / WIDTH as u32;
 const FIRST_COLUMN: u64 = 0x1111_1111_1111_1111;
 
 /// Numbers of pixels.
-const STEPS: [f32; TILE as usize] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
+const STEPS: [f32; TILE as usize] =
+    [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
 
 /// Column in pixels, and row in blocks, of as many blocks as there are lanes.
 const BLOCK_COLUMNS: [f32; 16] = [0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0, 0.0, 4.0, 8.0, 12.0];
@@ -330,12 +331,15 @@ fn sort<S: Simd>(fragments: &mut [Fragment<S>]) {
                 if !swap.any_true() {
                     break;
                 }
-                let far = Fragment { depth: swap.select(near.depth, moved.depth), color: [
-                    swap.select(near.color[0], moved.color[0]),
-                    swap.select(near.color[1], moved.color[1]),
-                    swap.select(near.color[2], moved.color[2]),
-                    swap.select(near.color[3], moved.color[3]),
-                ] };
+                let far = Fragment {
+                    depth: swap.select(near.depth, moved.depth),
+                    color: [
+                        swap.select(near.color[0], moved.color[0]),
+                        swap.select(near.color[1], moved.color[1]),
+                        swap.select(near.color[2], moved.color[2]),
+                        swap.select(near.color[3], moved.color[3]),
+                    ],
+                };
                 moved.depth = swap.select(moved.depth, near.depth);
                 for k in 0..4 {
                     moved.color[k] = swap.select(moved.color[k], near.color[k]);
