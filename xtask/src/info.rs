@@ -6,8 +6,10 @@ use anyhow::Result;
 use serde::Serialize;
 use tetlux_ingest::read;
 use tetlux_mesh::Component;
+use tetlux_order::Facts;
 
 use crate::mesh_args::{MeshArgs, split_of};
+use crate::order::FactsReport;
 use crate::progress;
 use crate::report::write_json;
 
@@ -41,6 +43,7 @@ struct Info {
     volume: f64,
     components: usize,
     boundary_faces: usize,
+    ordering: FactsReport,
     faults: Vec<String>,
     fields: Vec<FieldInfo>,
 }
@@ -85,6 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             volume: report.volume,
             components: report.components,
             boundary_faces: report.boundary_faces,
+            ordering: FactsReport::new(&Facts::new(&mesh)),
             faults: report.faults(),
             fields: fields.collect(),
         })
@@ -115,6 +119,7 @@ impl Info {
         row("volume", format!("{:.6}", self.volume));
         row("components", self.components.to_string());
         row("boundary faces", self.boundary_faces.to_string());
+        row("for ordering", self.ordering.to_string());
         for field in &self.fields {
             let range = |r: &Option<[f64; 2]>| r.map_or("no finite value".into(), |[lo, hi]| format!("{lo} to {hi}"));
             let missing =

@@ -8,6 +8,7 @@ mod compare;
 mod info;
 mod input;
 mod mesh_args;
+mod order;
 mod progress;
 mod render;
 mod report;
@@ -39,6 +40,9 @@ enum Command {
     /// Say what a mesh file holds, and what is wrong with it
     #[command(after_help = info::EXAMPLES)]
     Info(info::Args),
+    /// Judge visibility orders along rays: inversions, cycles, times, and what they do to the picture
+    #[command(after_help = order::EXAMPLES)]
+    Order(order::Args),
     /// Run format, lints, all tests and the documentation; installs a Vulkan driver on Debian if there is none
     Test,
 }
@@ -49,6 +53,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
         Command::BuildTables(args) => build_tables::run(&args),
         Command::Info(args) => info::run(&args).map(|()| true),
+        Command::Order(args) => order::run(&args),
         Command::Test => test::run().map(|()| true),
     };
     match result {
