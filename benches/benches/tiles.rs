@@ -7,7 +7,7 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use tetlux_ingest::{ReadOptions, Split, read_tet_mesh};
 use tetlux_mesh::{TetMesh, procedural};
-use tetlux_render::Renderer;
+use tetlux_render::{Model, Renderer};
 use tetlux_scene::{Backend, Order, Plan, SceneFile};
 
 const WING: &str = include_str!("../../scenes/wing.toml");
@@ -17,7 +17,7 @@ const SCENES: [(&str, &str); 2] = [
 ];
 
 fn stages(c: &mut Criterion, name: &str, mesh: &TetMesh, file: &str) {
-    let renderer = Renderer::new();
+    let (renderer, model) = (Renderer::new(), Model::new(mesh));
     let file = SceneFile::parse(name, file).unwrap_or_else(|e| panic!("{e}"));
     let mut scene = file.scene(mesh, 0).unwrap_or_else(|e| panic!("{e}"));
     scene.method.backend = Backend::Cpu;
@@ -29,7 +29,7 @@ fn stages(c: &mut Criterion, name: &str, mesh: &TetMesh, file: &str) {
         for stage in names {
             group.bench_function(format!("{stage}, order {order}"), |b| {
                 b.iter_custom(|runs| {
-                    let frames = (0..runs).map(|_| renderer.render(&scene, mesh, &plan));
+                    let frames = (0..runs).map(|_| renderer.render(&scene, &model, &plan));
                     let seconds = frames.map(|frame| {
                         let frame = frame.unwrap_or_else(|e| panic!("{e}"));
                         let found = frame.stages.iter().find(|s| s.name == *stage);

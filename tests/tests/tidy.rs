@@ -18,7 +18,20 @@ const FORBIDDEN: &[(&str, &[&str])] = &[
     ("tetlux-ingest", &["tetlux-optics", "tetlux-scene", "tetlux-render", "wgpu"]),
     ("tetlux-optics", &["tetlux-mesh", "tetlux-render", "wgpu"]),
     ("tetlux-image", &["tetlux-mesh", "tetlux-render", "wgpu"]),
-    ("tetlux-order", &["tetlux-optics", "tetlux-image", "tetlux-render", "wgpu"]),
+    (
+        "tetlux-order",
+        &[
+            "tetlux-ingest",
+            "tetlux-optics",
+            "tetlux-image",
+            "tetlux-scene",
+            "tetlux-shaders",
+            "tetlux-render",
+            "wgpu",
+            "wgpu-types",
+            "naga",
+        ],
+    ),
     // The truth shares no code with what it judges.
     ("tetlux-reference", &["tetlux-tables", "tetlux-order", "tetlux-render", "tetlux-shaders", "wgpu"]),
     ("tetlux-scene", &["tetlux-render", "tetlux-shaders", "wgpu"]),

@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use anyhow::Result;
 use serde::Serialize;
 use tetlux_mesh::{Check, Component};
+use tetlux_order::Facts;
 
 use crate::mesh_args::MeshArgs;
+use crate::order::FactsReport;
 use crate::progress;
 use crate::report::write_json;
 
@@ -42,6 +44,7 @@ struct Info {
     components: usize,
     boundary_faces: usize,
     checks: Vec<Checked>,
+    ordering: FactsReport,
     faults: Vec<String>,
     fields: Vec<FieldInfo>,
 }
@@ -93,6 +96,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             components: report.components,
             boundary_faces: report.boundary_faces,
             checks: report.checks().map(|Check { name, count, meaning }| Checked { name, count, meaning }).into(),
+            ordering: FactsReport::new(&Facts::new(&mesh)),
             faults: report.faults(),
             fields: fields.collect(),
         }
@@ -123,6 +127,7 @@ impl Info {
         row("volume", format!("{:.6}", self.volume));
         row("components", self.components.to_string());
         row("boundary faces", self.boundary_faces.to_string());
+        row("for ordering", self.ordering.to_string());
         for field in &self.fields {
             let range = |r: &Option<[f64; 2]>| r.map_or("no finite value".into(), |[lo, hi]| format!("{lo} to {hi}"));
             let missing =

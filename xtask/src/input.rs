@@ -1,4 +1,4 @@
-//! Scene, mesh and flags, as `render` and `compare` take them.
+//! Scene, mesh and flags, as `render`, `compare` and `order` take them.
 
 use std::path::{Path, PathBuf};
 
@@ -96,7 +96,7 @@ pub(crate) struct Input {
 }
 
 /// The scene of a mesh that comes without one.
-const DEFAULT: &str = include_str!("../../scenes/default.toml");
+pub(crate) const DEFAULT: &str = include_str!("../../scenes/default.toml");
 /// The scene that is rendered where nothing is named.
 const BUILT_IN: &str = include_str!("../../scenes/wing.toml");
 /// Tetrahedra of its mesh.
@@ -148,6 +148,11 @@ impl SceneArgs {
             // The first field, as other programs do; the report says which.
             file.field = file.field.or_else(|| mesh.fields().first().map(|f| f.name.clone()));
         }
+        self.bind(name, file, mesh)
+    }
+
+    /// A scene, which flags have overridden, on a mesh.
+    pub(crate) fn bind(&self, name: String, file: SceneFile, mesh: TetMesh) -> Result<Input> {
         let mut scene = file.scene(&mesh, self.camera)?;
         if let Some(parallel_scale) = self.parallel_scale {
             scene.camera.projection = Projection::Orthographic { parallel_scale };
@@ -155,7 +160,8 @@ impl SceneArgs {
         Ok(Input { name, title: file.title, mesh, scene, display_space: file.display_space })
     }
 
-    fn override_scene(&self, file: &mut SceneFile) -> Result<()> {
+    /// Sets what flags say.
+    pub(crate) fn override_scene(&self, file: &mut SceneFile) -> Result<()> {
         for (flag, value) in [
             ("--unit-distance", self.unit_distance),
             ("--max-error", self.max_error),

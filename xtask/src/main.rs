@@ -9,6 +9,7 @@ mod compare;
 mod info;
 mod input;
 mod mesh_args;
+mod order;
 mod progress;
 mod render;
 mod report;
@@ -44,6 +45,9 @@ enum Command {
     /// List the meshes that are kept between runs, or remove them
     #[command(after_help = cache::EXAMPLES)]
     Cache(cache::Args),
+    /// Judge visibility orders along rays: inversions, cycles, times, and what they do to the picture
+    #[command(after_help = order::EXAMPLES)]
+    Order(order::Args),
     /// Run format, lints, all tests and the documentation; installs a Vulkan driver on Debian if there is none
     Test,
 }
@@ -55,6 +59,7 @@ fn main() -> ExitCode {
         Command::BuildTables(args) => build_tables::run(&args),
         Command::Info(args) => info::run(&args).map(|()| true),
         Command::Cache(args) => cache::run(&args).map(|()| true),
+        Command::Order(args) => order::run(&args),
         Command::Test => test::run().map(|()| true),
     };
     match result {

@@ -238,14 +238,14 @@ fn a_folder_that_cannot_be_made_is_named() {
 #[test]
 fn every_command_has_help_with_examples() {
     let folder = tempfile::tempdir().unwrap();
-    for command in ["render", "compare", "info", "cache"] {
+    for command in ["render", "compare", "info", "cache", "order"] {
         let output = run(folder.path(), &[command, "--help"]);
         assert!(output.status.success());
         let text = stdout(&output);
         assert!(text.contains("Examples:") && text.contains(&format!("cargo xtask {command}")), "{text}");
     }
     let output = run(folder.path(), &["--help"]);
-    for command in ["render", "compare", "info", "test"] {
+    for command in ["render", "compare", "info", "order", "test"] {
         assert!(stdout(&output).contains(command), "{command}");
     }
     assert_eq!(run(folder.path(), &[]).status.code(), Some(2));
@@ -265,6 +265,7 @@ fn info_tells_what_a_mesh_holds() {
     assert!((json["volume"].as_f64().unwrap() - 0.5).abs() < 1e-12, "{json}");
     // Eight faces, two of them shared.
     assert_eq!((&json["boundary_faces"], &json["components"]), (&serde_json::json!(6), &serde_json::json!(1)));
+    assert_eq!((&json["ordering"]["conforming"], &json["ordering"]["folded_faces"]), (&true.into(), &0.into()));
     assert_eq!(json["fields"][1]["ranges"][0], serde_json::json!([0.0, 5.0]));
 }
 
@@ -343,6 +344,40 @@ fn flags_that_a_file_has_no_use_for_are_refused() {
         assert_fails(&run(folder.path(), &["info", "mesh.vtu", flag, value]), &[part, "mesh.vtu"]);
         assert_fails(&run(folder.path(), &["render", "scene.toml", flag, value]), &[part, "mesh.vtu"]);
         assert_fails(&run(folder.path(), &["render", flag, value]), &[flag, "no"]);
+    }
+}
+
+#[test]
+fn orders_are_judged() {
+    let folder = folder();
+    let args = ["order", "--grid", "4", "--views", "2", "--size", "64x64", "--view", "seen/g.png", "--json", "g.json"];
+    let output = run(folder.path(), &args);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    for part in ["384 cells", "convex, conforming", "auto used mpvo", "gap arrows", "search"] {
+        assert!(stdout(&output).contains(part), "\"{part}\" is not in:\n{}", stdout(&output));
+    }
+    let judged = json(&folder.path().join("g.json"));
+    let method = |name: &str| judged["methods"].as_array().unwrap().iter().find(|m| m["method"] == name).unwrap();
+    for name in ["exact", "mpvo", "power", "auto"] {
+        assert_eq!((&method(name)["inversions"], &method(name)["max_error"]), (&0.into(), &0.0.into()), "{name}");
+    }
+    // By index is an order from one side alone, and of two opposite views one is from another.
+    let none = method("none");
+    assert!(none["inversions"].as_u64().unwrap() > 1000 && none["max_error"].as_f64().unwrap() > 0.01, "{none}");
+    assert_eq!(none["rays"], method("exact")["rays"]);
+    for name in ["none", "centroid", "exact"] {
+        assert!(folder.path().join(format!("seen/g-{name}.png")).exists(), "{name}");
+    }
+
+    let output = run(folder.path(), &["order", "scene.toml", "--only", "exact", "--all-pairs", "--rays", "50"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(!stdout(&output).contains("centroid"), "{}", stdout(&output));
+    assert_eq!(run(folder.path(), &["order", "mesh.vtu"]).status.code(), Some(0));
+    assert_fails(&run(folder.path(), &["order", "nowhere.vtu"]), &["nowhere.vtu"]);
+    for bad in [["--only", "nearest"], ["--grid", "0"], ["--views", "0"]] {
+        let output = run(folder.path(), &["order", bad[0], bad[1]]);
+        assert_eq!(output.status.code(), Some(2), "{bad:?}");
+        assert!(stderr(&output).contains(bad[1]), "{}", stderr(&output));
     }
 }
 

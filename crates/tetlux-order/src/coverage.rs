@@ -35,7 +35,7 @@ pub(crate) struct Pixels {
 /// Relative errors of a projection to pixels are far below this, in pixels, while [`SHALLOW`] holds.
 const PROJECTION_ERROR: f64 = 1e-3;
 
-/// Depth, over distance, below which a vertex is not projected.
+/// Depth, over the sum of the distances along the axes, below which a vertex is not projected.
 const SHALLOW: f64 = 1e-6;
 
 impl Rays {
@@ -67,7 +67,7 @@ impl Rays {
     pub(crate) fn bounds(&self, corners: [Vec3; 3]) -> Pixels {
         let from_eye = corners.map(|p| p.as_dvec3() - self.eye);
         let depth = from_eye.map(|p| self.forward.dot(p));
-        let distance = from_eye.map(|p| p.length());
+        let distance = from_eye.map(|p| p.abs().element_sum());
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         if self.parallel || (0..3).all(|i| depth[i] > SHALLOW * distance[i]) {
             for (p, depth) in from_eye.iter().zip(depth) {
@@ -83,8 +83,9 @@ impl Rays {
         }
         let range = |axis: usize| {
             // Casts saturate, so that infinite bounds are those of the picture.
-            let first = (low[axis] - PROJECTION_ERROR - self.center_offset(axis, 0.0)).ceil() as u32;
-            let end = (high[axis] + PROJECTION_ERROR - self.center_offset(axis, -1.0)).floor() as u32;
+            // The first pixel may be one too many.
+            let first = (low[axis] - PROJECTION_ERROR - self.center_offset(axis, 0.0)) as u32;
+            let end = (high[axis] + PROJECTION_ERROR - self.center_offset(axis, -1.0)) as u32;
             first.min(self.size[axis])..end.min(self.size[axis])
         };
         Pixels { columns: range(0), rows: range(1) }
@@ -97,7 +98,7 @@ impl Rays {
             Triangle::new(self, corners).edges.iter().any(|edge| {
                 [(0, 0), (right, 0), (0, bottom), (right, bottom)]
                     .into_iter()
-                    .all(|(column, row)| edge.value(self, column, row) < -edge.bound)
+                    .all(|(column, row)| edge.value_at(self, column, row) < -edge.bound)
             })
         })
     }
@@ -114,6 +115,8 @@ struct Edge {
     y: f64,
     /// Where the value is above this in magnitude, its sign is certain.
     bound: f64,
+    /// Column, from the middle, at which the value is zero in the middle row, its growth a row, and its error.
+    root: [f64; 3],
 }
 
 /// Roundings of an edge's value, in units of 2^-53 and of the product of the vectors' lengths: differences 2, products
@@ -133,16 +136,23 @@ impl Edge {
             let size = along.length() * from_eye.length() * (1.0 + reach);
             (n.dot(rays.forward), n.dot(rays.right), n.dot(rays.down), size)
         };
-        Edge { a, b, middle, x: x * rays.pixel, y: y * rays.pixel, bound: EDGE_ERROR * size }
+        let (x, y, bound) = (x * rays.pixel, y * rays.pixel, EDGE_ERROR * size);
+        let (root, growth) = (-middle / x, -y / x);
+        let error = 1e-6 + 2.0 * bound / x.abs() + 1e-12 * (root.abs() + growth.abs() * f64::from(rays.size[1]));
+        Edge { a, b, middle, x, y, bound, root: [root, growth, error] }
     }
 
-    fn value(&self, rays: &Rays, column: u32, row: u32) -> f64 {
-        let [x, y] = [rays.center_offset(0, f64::from(column)), rays.center_offset(1, f64::from(row))];
+    /// At pixels from the middle of the picture.
+    fn value(&self, x: f64, y: f64) -> f64 {
         self.middle + self.x * x + self.y * y
     }
 
-    fn holds(&self, rays: &Rays, column: u32, row: u32) -> bool {
-        let value = self.value(rays, column, row);
+    fn value_at(&self, rays: &Rays, column: u32, row: u32) -> f64 {
+        self.value(rays.center_offset(0, f64::from(column)), rays.center_offset(1, f64::from(row)))
+    }
+
+    fn holds(&self, rays: &Rays, column: u32, row: u32, x: f64, y: f64) -> bool {
+        let value = self.value(x, y);
         if value.abs() > self.bound { value > 0.0 } else { self.holds_exactly(rays, column, row) }
     }
 
@@ -164,19 +174,19 @@ impl Edge {
     /// own roundings, not their order, decide which are inside.
     fn is_level(&self, rays: &Rays, columns: &Range<u32>, row: u32) -> bool {
         let steep = self.x.abs() > 8.0 * self.bound;
-        let inside = |column: u32| self.value(rays, column, row) > self.bound;
+        let inside = |column: u32| self.value_at(rays, column, row) > self.bound;
         !(steep || columns.is_empty() || inside(columns.start) && inside(columns.end - 1))
     }
 
     /// Shrinks a range of a row's columns to those that may be inside.
-    fn shrink(&self, rays: &Rays, columns: &mut Range<u32>, row: u32) {
-        let root = -self.value(rays, 0, row) / self.x;
-        // What the value may err, and the division by a slope; then nothing is certain if that is too much.
-        let error = 1e-6 + 2.0 * self.bound / self.x.abs() + 1e-12 * root.abs();
+    fn shrink(&self, columns: &mut Range<u32>, first: f64, y: f64) {
+        // From the first column's centre; casts saturate, so that the range only shrinks within itself.
+        let [root, growth, error] = self.root;
+        let root = root + growth * y - first;
         if self.x > 0.0 {
-            columns.start = columns.start.max((root - error).ceil() as u32);
+            columns.start = columns.start.max((root - error) as u32);
         } else if self.x < 0.0 {
-            columns.end = columns.end.min(((root + error).floor() + 1.0) as u32);
+            columns.end = columns.end.min(((root + error + 1.0).max(0.0)) as u32);
         }
     }
 }
@@ -199,12 +209,17 @@ impl Triangle {
     /// Calls `cover` with rows of `pixels` and columns in them whose rays pass through the triangle: each such pixel
     /// is in one call.
     pub(crate) fn cover(&self, rays: &Rays, pixels: Pixels, mut cover: impl FnMut(u32, Range<u32>)) {
+        let [first_x, first_y] = [0, 1].map(|axis| rays.center_offset(axis, 0.0));
+        let wide = pixels.columns.len() > WIDE;
         for row in pixels.rows {
+            let y = f64::from(row) + first_y;
+            let holds = |column| {
+                let x = f64::from(column) + first_x;
+                self.edges.iter().all(|edge| edge.holds(rays, column, row, x, y))
+            };
             let mut columns = pixels.columns.clone();
-            let holds = |column| self.edges.iter().all(|edge| edge.holds(rays, column, row));
-            let wide = columns.len() > WIDE;
             if wide {
-                self.edges.iter().for_each(|edge| edge.shrink(rays, &mut columns, row));
+                self.edges.iter().for_each(|edge| edge.shrink(&mut columns, first_x, y));
             }
             if !wide || self.edges.iter().any(|edge| edge.is_level(rays, &columns, row)) {
                 columns.filter(|&column| holds(column)).for_each(|column| cover(row, column..column + 1));

@@ -211,7 +211,49 @@ impl<'a> Verifier<'a> {
 
     /// Checks an order along rays; seconds for a hundred thousand rays through half a million cells.
     pub fn verify(&self, order: &Order, rays: &[Ray], pairs: Pairs) -> Verification {
-        let mut position = vec![NONE; self.mesh.cells().len()];
+        self.verify_all(&[order], rays, pairs).swap_remove(0)
+    }
+
+    /// Checks several orders along the same rays, each of which is cast once.
+    pub fn verify_all(&self, orders: &[&Order], rays: &[Ray], pairs: Pairs) -> Vec<Verification> {
+        let ranks: Vec<Ranks> = orders.iter().map(|order| Ranks::new(self.mesh, order)).collect();
+        let per_ray: Vec<Vec<Verification>> = rays
+            .par_iter()
+            .enumerate()
+            .map_init(
+                || (Vec::new(), Vec::new()),
+                |(found, ranked), (index, ray)| {
+                    let Some(local) = Local::new(self.mesh, ray) else { return Vec::new() };
+                    self.along(&local, found);
+                    let judge = |ranks: &Ranks| {
+                        ranked.clear();
+                        ranked.extend(found.iter().filter(|i| ranks.position[i.cell as usize] != NONE));
+                        check(index, &local, ranked, ranks, pairs)
+                    };
+                    ranks.iter().map(judge).collect()
+                },
+            )
+            .collect();
+        let mut all: Vec<Verification> = ranks.iter().map(Ranks::verification).collect();
+        for one in per_ray {
+            all.iter_mut().zip(one).for_each(|(all, one)| all.add(one));
+        }
+        all
+    }
+}
+
+/// An order, by cell.
+struct Ranks {
+    /// For each cell its position in the order, [`NONE`] if it has none.
+    position: Vec<u32>,
+    /// For each position its rank: the same for all of a group.
+    rank: Vec<u32>,
+    repeated: usize,
+}
+
+impl Ranks {
+    fn new(mesh: &TetMesh, order: &Order) -> Ranks {
+        let mut position = vec![NONE; mesh.cells().len()];
         let mut repeated = 0;
         for (at, &cell) in order.cells.iter().enumerate() {
             match position.get_mut(cell as usize) {
@@ -219,29 +261,19 @@ impl<'a> Verifier<'a> {
                 _ => repeated += 1,
             }
         }
-        // What is in one group has one rank.
         let mut rank: Vec<u32> = (0..order.cells.len() as u32).collect();
         for group in &order.groups {
             if let Some(ranks) = rank.get_mut(group.start as usize..group.end as usize) {
                 ranks.fill(group.start);
             }
         }
-        let per_ray: Vec<Verification> = rays
-            .par_iter()
-            .enumerate()
-            .map_init(Vec::new, |found, (index, ray)| {
-                let Some(local) = Local::new(self.mesh, ray) else { return Verification::default() };
-                self.along(&local, found);
-                found.retain(|interval| position[interval.cell as usize] != NONE);
-                check(index, &local, found, &position, &rank, pairs)
-            })
-            .collect();
-        let missing = position.iter().filter(|&&at| at == NONE).count();
-        let mut all = Verification { missing, repeated, ..Verification::default() };
-        for one in per_ray {
-            all.add(one);
-        }
-        all
+        Ranks { position, rank, repeated }
+    }
+
+    /// What is known without any ray.
+    fn verification(&self) -> Verification {
+        let missing = self.position.iter().filter(|&&at| at == NONE).count();
+        Verification { missing, repeated: self.repeated, ..Verification::default() }
     }
 }
 
@@ -263,13 +295,13 @@ impl Verification {
 }
 
 /// Checks one ray's intervals, sorted by their middles.
-fn check(index: usize, ray: &Local, found: &[Interval], position: &[u32], rank: &[u32], pairs: Pairs) -> Verification {
+fn check(index: usize, ray: &Local, found: &[Interval], order: &Ranks, pairs: Pairs) -> Verification {
     let (rays, intervals) = (usize::from(!found.is_empty()), found.len() as u64);
     let mut result = Verification { rays, intervals, ..Verification::default() };
     for (i, near) in found.iter().enumerate() {
         for far in &found[i + 1..] {
-            let positions = [near, far].map(|interval| position[interval.cell as usize]);
-            let ranks = positions.map(|at| rank[at as usize]);
+            let positions = [near, far].map(|interval| order.position[interval.cell as usize]);
+            let ranks = positions.map(|at| order.rank[at as usize]);
             let example = || Example { ray: index, intervals: [ray.interval(near), ray.interval(far)], positions };
             let common = near.exit.min(far.exit) - near.entry.max(far.entry);
             let overlap = common > OVERLAP * near.length().min(far.length());

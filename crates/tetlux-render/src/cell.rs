@@ -5,7 +5,14 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use crate::device_view::{DeviceView, Lens};
+use crate::device_view::DeviceView;
+
+/// What the shaders know of the view.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lens {
+    pub(crate) view: DeviceView,
+    pub(crate) orthographic: bool,
+}
 
 /// A vertex in eye space and in pixels.
 #[derive(Clone, Copy, Debug)]

@@ -23,13 +23,6 @@ pub(crate) struct DeviceView {
     pub(crate) near: f32,
 }
 
-/// What the shaders know of the view.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lens {
-    pub(crate) view: DeviceView,
-    pub(crate) orthographic: bool,
-}
-
 impl DeviceView {
     pub(crate) fn new(view: &View, mesh: &TetMesh, device: &DeviceMesh) -> DeviceView {
         let eye = (view.eye - mesh.origin()) * device.scale;

@@ -60,7 +60,7 @@ use tetlux_scene::{Backend, Classification, Device, Integrator, Plan, Scene, Tab
 use tetlux_tables::{Table, TableKind, TableSpec};
 
 use crate::device_mesh::DeviceMesh;
-use crate::device_view::{DeviceView, Lens};
+use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
 
 /// A picture and the time it took.
@@ -79,7 +79,7 @@ pub struct Frame {
 /// What a picture is made of.
 struct Job<'a> {
     mesh: &'a DeviceMesh,
-    lens: Lens,
+    view: DeviceView,
     eye: EyeSpace,
     pieces: &'a [Piece],
     weights: Weights,
@@ -156,8 +156,7 @@ impl Renderer {
         let (mesh, view) = (model.mesh(), &plan.view);
         let mut order = order::order(&self.orderer, model, plan, &mut stages);
         let device_mesh = stages.run("prepare", || DeviceMesh::new(mesh, &scene.scalar));
-        let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
-        let tetlux_optics::Classification::OneField(transfer) = &scene.classification else { return Err(RenderError::Bivariate) };
+        let transfer = scene.transfer().ok_or(RenderError::Bivariate)?;
         let pieces = pieces(transfer, scene.scalar.range, 1.0 / (scene.unit_distance * device_mesh.scale));
         let weights = match plan.integrator {
             Integrator::Average => Weights::Average,
@@ -174,7 +173,7 @@ impl Renderer {
         };
         let job = Job {
             mesh: &device_mesh,
-            lens,
+            view: DeviceView::new(view, mesh, &device_mesh),
             eye: EyeSpace::new(view, mesh, &device_mesh),
             pieces: &pieces,
             weights,

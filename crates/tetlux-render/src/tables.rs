@@ -11,7 +11,7 @@ pub fn table_specs(scene: &Scene, mesh: &TetMesh, plan: &Plan) -> Vec<TableSpec>
     if plan.backend != Backend::Gpu {
         return Vec::new();
     }
-    let tetlux_optics::Classification::OneField(transfer) = &scene.classification else { return Vec::new() };
+    let Some(transfer) = scene.transfer() else { return Vec::new() };
     let table = |id: &str, size, kind| TableSpec { id: id.into(), kind, size, precision: Precision::F32 };
     let transfer_spec = || {
         let [low, high] = scene.scalar.range;

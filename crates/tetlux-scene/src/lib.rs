@@ -39,7 +39,7 @@ pub use view::View;
 
 use glam::DVec3;
 use tetlux_mesh::ScalarField;
-use tetlux_optics::Light;
+use tetlux_optics::{Light, TransferFunction};
 
 /// Everything about a picture but the mesh.
 #[derive(Debug, Clone)]
@@ -74,6 +74,14 @@ pub struct Lighting {
 }
 
 impl Scene {
+    /// The transfer function, where one field is classified.
+    pub fn transfer(&self) -> Option<&TransferFunction> {
+        match &self.classification {
+            tetlux_optics::Classification::OneField(transfer) => Some(transfer),
+            _ => None,
+        }
+    }
+
     /// The luminance, if it is the same wherever something is seen: then the order of cells does not matter.
     pub fn single_luminance(&self) -> Option<[f64; 3]> {
         let shaded = self.lighting.as_ref().is_some_and(|lighting| lighting.light.shades());

@@ -74,7 +74,7 @@ impl Maker<'_> {
     fn scene(&self, binding: Binding, job: &Job) -> wgpu::Buffer {
         let storage = wgpu::BufferUsages::STORAGE;
         match binding {
-            Binding::View => self.filled("view", bytemuck::bytes_of(&job.lens.view), wgpu::BufferUsages::UNIFORM),
+            Binding::View => self.filled("view", bytemuck::bytes_of(&job.view), wgpu::BufferUsages::UNIFORM),
             Binding::Pieces => {
                 let pieces: Vec<[[f32; 4]; 3]> = job.pieces.iter().map(|p| [p.low, p.high, p.s]).collect();
                 self.filled("pieces", bytemuck::cast_slice(&pieces), storage)

@@ -3,15 +3,16 @@
 use glam::{DVec3, Vec2, Vec3};
 use tetlux_mesh::procedural::{Parts, Split, cuboid};
 use tetlux_mesh::{Component, Field, TetMesh};
+use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_optics::transfer_f32::{Weights, integrate, piece_at, pieces};
 use tetlux_reference::{Caster, Ray};
-use tetlux_scene::{Camera, Method, Projection, Scene, View};
+use tetlux_scene::{Camera, Method, Projection, Scene, TablePrecision, View};
 
 use super::*;
-use crate::cell::Kind;
+use crate::cell::{Kind, Lens};
 use crate::device_mesh::{DeviceMesh, NEGATIVE};
-use crate::device_view::{DeviceView, Lens};
+use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
 
 /// Single precision against double: positions, scalars and weights are each good to some 1e-6.
@@ -23,6 +24,7 @@ const ROUNDING: f64 = 3e-6;
 /// What a picture is drawn from, owned.
 struct Drawing {
     mesh: TetMesh,
+    transfer: TransferFunction,
     scene: Scene,
     view: View,
     device: DeviceMesh,
@@ -32,22 +34,29 @@ impl Drawing {
     fn new(mesh: TetMesh, transfer: TransferFunction, camera: Camera, size: [u32; 2]) -> Drawing {
         let scalar = mesh.scalar("s", Component::Magnitude).unwrap();
         let (background, method) = ([0.0; 3], Method::default());
-        let scene = Scene { scalar, transfer, unit_distance: 1.0, camera, size, background, method };
+        let classification = Classification::OneField(transfer.clone());
+        let (second, lighting, unit_distance) = (None, None, 1.0);
+        let scene =
+            Scene { scalar, second, classification, lighting, unit_distance, camera, size, background, method };
         let view = scene.camera.view(size).unwrap();
         let device = DeviceMesh::new(&mesh, &scene.scalar);
-        Drawing { mesh, scene, view, device }
+        Drawing { mesh, transfer, scene, view, device }
     }
 
     fn draw(&self, level: Level, order: &[u32], groups: &[Range<u32>], max_error: f64) -> Vec<[f32; 4]> {
         let job = Job {
             mesh: &self.device,
-            lens: self.lens(),
+            view: self.lens().view,
             eye: EyeSpace::new(&self.view, &self.mesh, &self.device),
             pieces: &self.pieces(),
             weights: Weights::Direct,
             order,
             groups,
             max_error,
+            entry_pieces: &[],
+            tables: &[],
+            table_precision: TablePrecision::F32,
+            table_length: 1.0,
             size: self.view.size,
         };
         draw_on(level, &job, &mut Stages::default())
@@ -69,7 +78,7 @@ impl Drawing {
     }
 
     fn pieces(&self) -> Vec<tetlux_optics::transfer_f32::Piece> {
-        pieces(&self.scene.transfer, self.scene.scalar.range, 1.0 / self.device.scale)
+        pieces(&self.transfer, self.scene.scalar.range, 1.0 / self.device.scale)
     }
 
     /// The truth.
@@ -77,7 +86,9 @@ impl Drawing {
         let caster = Caster::new(tetlux_reference::Scene {
             mesh: &self.mesh,
             scalar: &self.scene.scalar,
-            transfer: &self.scene.transfer,
+            second: None,
+            classification: &self.scene.classification,
+            lighting: None,
             unit_distance: self.scene.unit_distance,
             tolerance: 1e-8,
         });
