@@ -7,11 +7,13 @@ use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_mai
 use tetlux_benches::{cube, cube_mesh, scene, transfer};
 use tetlux_mesh::{Component, TetMesh};
 use tetlux_optics::Classification;
+use tetlux_optics::accuracy::Random;
 use tetlux_optics::emission::density_weights;
 use tetlux_optics::segment::weights;
 use tetlux_optics::segment_f32::weights_direct;
 use tetlux_optics::symmetric_f32::weights_symmetric;
 use tetlux_optics::transfer_f32::{Weights, integrate, piece_at, pieces};
+use tetlux_optics::widget::{BivariateFunction, Rectangle, Shape, Widget};
 use tetlux_order::{Eye, centroid};
 use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray};
 use tetlux_render::{Model, Renderer};
@@ -79,6 +81,29 @@ fn optics(c: &mut Criterion) {
     group.finish();
 }
 
+fn culling(c: &mut Criterion) {
+    let widget = |x: f64| {
+        let shape = Shape::Gaussian { center: [x, 0.5], sigma: [0.02, 0.02] };
+        Widget::new(shape, None, 2.0, [1.0; 3]).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let mut random = Random::new(3);
+    let ranges: Vec<Rectangle> = (0..500_000)
+        .map(|_| {
+            let [x, y] = [random.unit(), random.unit()];
+            Rectangle { s: [x, x + 0.03], g: [y, y + 0.03] }
+        })
+        .collect();
+    let mut group = c.benchmark_group("culling");
+    group.throughput(Throughput::Elements(ranges.len() as u64));
+    for count in [1, 5] {
+        let function = BivariateFunction { widgets: (0..count).map(|k| widget(0.1 + 0.2 * f64::from(k))).collect() };
+        group.bench_function(format!("{count} widgets"), |b| {
+            b.iter(|| ranges.iter().filter(|range| function.is_visible_over(range)).count());
+        });
+    }
+    group.finish();
+}
+
 fn tables(c: &mut Criterion) {
     let mut group = c.benchmark_group("tables");
     group.sample_size(10);
@@ -134,5 +159,5 @@ fn reference(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, mesh, order, optics, tables, picture, reference);
+criterion_group!(benches, mesh, order, optics, culling, tables, picture, reference);
 criterion_main!(benches);

@@ -24,6 +24,11 @@
 //! | [`published_f32`] | the published form in f32, as a shader has it |
 //! | [`transfer_f32`] | whole segments in the shader's arithmetic |
 //! | [`light`], [`light_f32`] | shading by the gradient, silhouettes |
+//! | [`erf_f32`] | the error function as a shader has it |
+//! | [`widget_f32`], [`widgets_f32`] | widgets, and segments through any number of them to a stated error, in f32 |
+//! | [`two_field_f32`] | colour of one scalar, opacity of another, exact, in f32 |
+//! | [`image_f32`] | image functions to a stated error, in f32 |
+//! | [`approximate_f32`] | the approximate mode as it was published, in f32 |
 //! | [`accuracy`] | inputs and measure of the stated f32 errors |
 //! | [`color_space`] | the colour spaces in which presets are interpolated |
 //!
@@ -43,9 +48,12 @@
 //! ```
 
 pub mod accuracy;
+pub mod approximate_f32;
 pub mod classification;
 pub mod color_space;
 pub mod emission;
+pub mod erf_f32;
+pub mod image_f32;
 pub mod image_function;
 pub mod light;
 pub mod light_f32;
@@ -61,8 +69,11 @@ pub mod symmetric_f32;
 mod testing;
 pub mod transfer;
 pub mod transfer_f32;
+pub mod two_field_f32;
 pub mod widget;
+pub mod widget_f32;
 pub mod widget_integral;
+pub mod widgets_f32;
 
 pub use classification::Classification;
 pub use emission::EmissionConvention;

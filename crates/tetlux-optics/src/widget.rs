@@ -18,8 +18,11 @@ use std::f64::consts::PI;
 #[cfg(test)]
 mod tests;
 
-/// Where a Gaussian falls below this share of its peak (beyond 7.4 sigma) nothing of it is taken to be visible.
+/// Where a Gaussian falls below this share of its peak nothing of it is taken to be visible.
 pub const GAUSSIAN_TAIL: f64 = 1e-12;
+
+/// That many sigma from its centre: sqrt(-2 ln GAUSSIAN_TAIL).
+const GAUSSIAN_REACH: f64 = 7.433_844_377_6;
 
 /// A rectangle of the (s, g) plane, ends included. Ends may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +40,10 @@ impl Rectangle {
         inside(point[0], self.s) && inside(point[1], self.g)
     }
 
+    /// Whether two rectangles share a point; never for NaN. Without branches: it is asked for every cell of a mesh.
     fn meets(&self, other: &Self) -> bool {
-        let overlap = |one: [f64; 2], two: [f64; 2]| one[0] <= two[1] && two[0] <= one[1];
-        overlap(self.s, other.s) && overlap(self.g, other.g)
+        let overlap = |one: [f64; 2], two: [f64; 2]| (one[0] <= two[1]) & (two[0] <= one[1]);
+        overlap(self.s, other.s) & overlap(self.g, other.g)
     }
 }
 
@@ -126,6 +130,8 @@ pub struct Widget {
     support: Option<Rectangle>,
     max_opacity: f64,
     color: [f64; 3],
+    /// Outside there is nothing to be seen.
+    footprint: Rectangle,
 }
 
 impl Widget {
@@ -170,7 +176,22 @@ impl Widget {
         }
         not_negative("max_opacity", [max_opacity])?;
         not_negative("color", color)?;
-        Ok(Self { shape, support, max_opacity, color })
+        Ok(Self::build(shape, support, max_opacity, color))
+    }
+
+    fn build(shape: Shape, support: Option<Rectangle>, max_opacity: f64, color: [f64; 3]) -> Self {
+        let whole = [f64::NEG_INFINITY, f64::INFINITY];
+        let mut footprint = support.unwrap_or(Rectangle { s: whole, g: whole });
+        if let Shape::Gaussian { center, sigma } = shape {
+            for (axis, range) in [&mut footprint.s, &mut footprint.g].into_iter().enumerate() {
+                let reach = GAUSSIAN_REACH * sigma[axis];
+                *range = [range[0].max(center[axis] - reach), range[1].min(center[axis] + reach)];
+            }
+        }
+        if max_opacity == 0.0 {
+            footprint.s = [f64::INFINITY, f64::NEG_INFINITY];
+        }
+        Self { shape, support, max_opacity, color, footprint }
     }
 
     /// How the opacity varies.
@@ -211,12 +232,12 @@ impl Widget {
             let [low, high] = [[rectangle.s[0], rectangle.g[0]], [rectangle.s[1], rectangle.g[1]]].map(place);
             Rectangle { s: [low[0], high[0]], g: [low[1], high[1]] }
         });
-        Self { shape, support, ..*self }
+        Self::build(shape, support, self.max_opacity, self.color)
     }
 
     /// The same without a support.
     pub(crate) fn unbounded(self) -> Self {
-        Self { support: None, ..self }
+        Self::build(self.shape, None, self.max_opacity, self.color)
     }
 
     /// Whether the point (s, g) lies in the support.
@@ -243,22 +264,10 @@ impl Widget {
     }
 
     /// Whether anything of the widget may be seen where s and g stay in a rectangle, for culling: no means that the
-    /// opacity is 0 there or, of a Gaussian, below [`GAUSSIAN_TAIL`] of its peak. Neither exponential nor sine.
+    /// opacity is 0 there or, of a Gaussian, below [`GAUSSIAN_TAIL`] of its peak. A comparison with the rectangle around
+    /// the widget (Song et al. 2009, section 3.1).
     pub fn is_visible_over(&self, range: &Rectangle) -> bool {
-        if self.max_opacity == 0.0 || self.support.is_some_and(|rectangle| !rectangle.meets(range)) {
-            return false;
-        }
-        match self.shape {
-            Shape::Uniform => true,
-            Shape::Gaussian { center, sigma } => {
-                let nearest = [center[0].max(range.s[0]).min(range.s[1]), center[1].max(range.g[0]).min(range.g[1])];
-                let [x, y] = [0, 1].map(|axis| (nearest[axis] - center[axis]) / sigma[axis]);
-                // -2 ln GAUSSIAN_TAIL.
-                x * x + y * y <= 55.262_042_231_857_1
-            }
-            // Dark on lines only.
-            Shape::Wave { .. } => true,
-        }
+        self.footprint.meets(range)
     }
 
     /// The largest opacity over a rectangle, for culling; exact but for a rectangle that a support cuts, where it is a
@@ -331,7 +340,8 @@ impl BivariateFunction {
 
     /// Whether any widget may be seen over a rectangle: see [`Widget::is_visible_over`].
     pub fn is_visible_over(&self, range: &Rectangle) -> bool {
-        self.widgets.iter().any(|widget| widget.is_visible_over(range))
+        // All of them: for the few widgets there are a comparison is cheaper than a branch that goes either way.
+        self.widgets.iter().fold(false, |seen, widget| seen | widget.is_visible_over(range))
     }
 
     /// The colour that all visible widgets share: then the order of segments along a ray does not matter. Black if
