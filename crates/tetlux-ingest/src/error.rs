@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use tetlux_mesh::MeshError;
 
 /// The formats [`read`](crate::read) knows, for messages.
-pub(crate) const FORMATS: &str = "closed surfaces to fill (OBJ, STL), VTK XML grids (.vtu, .vts, .vtr, .vti, .pvtu and the like, .vtm, .pvd), legacy VTK grids (.vtk), Gmsh (.msh, versions 2 and 4.1), TetGen (.node with .ele) and Exodus II (.ex2, .e, .exo, in netCDF's classic formats) and PLOT3D (whole 3-D grids)";
+pub(crate) const FORMATS: &str = "closed surfaces to fill (OBJ, STL), VTK XML grids (.vtu, .vts, .vtr, .vti, .pvtu and the like, .vtm, .pvd), legacy VTK grids (.vtk), Gmsh (.msh, versions 2 and 4.1), TetGen (.node with .ele) and Exodus II (.ex2, .e, .exo) and PLOT3D (whole 3-D grids)";
 
 /// Where in a file something was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

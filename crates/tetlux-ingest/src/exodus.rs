@@ -1,41 +1,32 @@
-//! Exodus II: element blocks with nodal and element variables, in netCDF's classic formats.
+//! Exodus II: element blocks with nodal and element variables, in netCDF's classic formats or in HDF5 (netCDF-4).
 //!
 //! The file names its parts by convention: `coordx` or `coord` holds the points, `connectN` block N with its kind in the
 //! attribute `elem_type`, `vals_nod_varV` a nodal variable and `vals_elem_varVebN` one of the elements of a block, each
 //! by time step (Schoof and Yarberry, EXODUS II: A Finite Element Data Model, Sandia report SAND92-2137, 1994).
 
 mod blocks;
+mod file;
+#[cfg(feature = "hdf5")]
+mod hdf5;
 mod netcdf;
 #[cfg(test)]
 mod tests;
 mod variables;
 
+use file::File;
 use glam::DVec3;
-use netcdf::NetCdf;
 
 use crate::source::Source;
 use crate::{IngestError, MixedMesh, Place};
 
-/// How HDF5 files begin, and with them those of netCDF-4.
-const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
-
 /// Whether these bytes begin like a netCDF file of any format.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    netcdf::recognizes(bytes) || bytes.starts_with(HDF5)
+    netcdf::recognizes(bytes) || bytes.starts_with(file::HDF5)
 }
 
 /// Reads the blocks of cells with volume, and all variables at a time step numbered from 0, the last without it.
 pub(crate) fn read(source: &Source, time: Option<usize>) -> Result<MixedMesh, IngestError> {
-    if source.bytes.starts_with(HDF5) {
-        let remedy = "read are netCDF's classic formats: convert it, as with `nccopy -k cdf5 IN OUT`";
-        return Err(source.unsupported(Place::File, "Exodus II or other data in", "HDF5 (netCDF-4)", remedy));
-    }
-    if !netcdf::recognizes(&source.bytes) {
-        let start = source.bytes[..source.bytes.len().min(8)].escape_ascii();
-        let remedy = "a netCDF file begins with CDF and 1, 2 or 5: write it again";
-        return Err(source.malformed(Place::Byte(0), "the netCDF signature", start, remedy));
-    }
-    let file = NetCdf::parse(source)?;
+    let file = File::open(source)?;
     let mut mesh = MixedMesh { path: source.path.clone(), points: points(source, &file)?, ..MixedMesh::default() };
     let blocks = blocks::read(source, &file, &mut mesh)?;
     let step = time_step(source, &file, time, &mut mesh)?;
@@ -43,7 +34,7 @@ pub(crate) fn read(source: &Source, time: Option<usize>) -> Result<MixedMesh, In
     Ok(mesh)
 }
 
-fn points(source: &Source, file: &NetCdf) -> Result<Vec<DVec3>, IngestError> {
+fn points(source: &Source, file: &File) -> Result<Vec<DVec3>, IngestError> {
     let Some(dimensions) = file.dimension("num_dim") else {
         let remedy = "Exodus II is the only kind of netCDF file that is read";
         return Err(source.malformed(Place::File, "Exodus II's dimension num_dim", "none", remedy));
@@ -77,7 +68,7 @@ fn points(source: &Source, file: &NetCdf) -> Result<Vec<DVec3>, IngestError> {
 /// The step to read. `None` if there is none.
 fn time_step(
     source: &Source,
-    file: &NetCdf,
+    file: &File,
     time: Option<usize>,
     mesh: &mut MixedMesh,
 ) -> Result<Option<u64>, IngestError> {

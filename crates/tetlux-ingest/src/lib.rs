@@ -6,7 +6,7 @@
 //! `.vti`, `.pvtu` and the like, `.vtm`, `.pvd`: appended or inline, raw, base64 or text, zlib, LZ4, LZMA or
 //! uncompressed, either byte order), legacy VTK grids (`.vtk`, versions 1.0 to 5.1), Gmsh (`.msh`,
 //! versions 2 and 4.1), TetGen (`.node` with `.ele`), Exodus II (in
-//! netCDF's classic formats), and PLOT3D (whole 3-D grids and their solutions, however they are written).
+//! netCDF's classic formats and HDF5), and PLOT3D (whole 3-D grids and their solutions, however they are written).
 //!
 //! A closed [`Surface`] (OBJ, STL) is filled with tetrahedra by [`fill`], by `read` too, with the distance to it and
 //! any [`Expression`] of the coordinates as fields. [`read_cached`] keeps large meshes between runs.

@@ -1,20 +1,21 @@
 //! Assembled meshes as bytes, to be stored and read back faster than they were made.
 //!
 //! Before the arrays stand magic, schema version, byte order, and a header of its own hash that says what the mesh was
-//! made of; after them their hash. Both ways the arrays pass straight between mesh and file, once. Whatever does not
+//! made of; after them their checksum. Both ways the arrays pass straight between mesh and file, once. Whatever does not
 //! match is a reason to make the mesh anew, never an error.
 
 use std::io::{self, Read, Write};
 
 use bytemuck::Pod;
 use glam::{DVec3, Vec3};
+use twox_hash::XxHash3_128;
 
 use crate::{Assembly, Field, Location, NONE, TetMesh};
 
 const MAGIC: [u8; 8] = *b"tetlux-m";
 
 /// Raised whenever the layout or its meaning changes.
-const SCHEMA: u32 = 2;
+const SCHEMA: u32 = 3;
 
 /// Written as a number: read back as another where the byte order differs.
 const BYTE_ORDER: u32 = 0x0102_0304;
@@ -22,8 +23,10 @@ const BYTE_ORDER: u32 = 0x0102_0304;
 /// Bytes before the header: magic, schema, byte order, length of the header, hash of the header.
 const PREAMBLE: usize = 8 + 4 + 4 + 8 + HASH;
 
-/// Bytes of a hash.
+/// Bytes of a hash, and of the arrays' checksum (XXH3): damage is to be told from none, and that in less time than
+/// reading takes.
 const HASH: usize = 32;
+const CHECKSUM: usize = 16;
 
 /// Headers are no longer than this, so a damaged length asks for no more.
 const LONGEST_HEADER: usize = 1 << 20;
@@ -122,10 +125,10 @@ impl TetMesh {
         to.write_all(&(header.len() as u64).to_ne_bytes())?;
         to.write_all(blake3::hash(&header).as_bytes())?;
         to.write_all(&header)?;
-        let mut hasher = blake3::Hasher::new();
+        let mut checksum = XxHash3_128::new();
         let mut put = |bytes: &[u8]| {
             bytes.chunks(CHUNK).try_for_each(|chunk| {
-                hasher.update(chunk);
+                checksum.write(chunk);
                 to.write_all(chunk)
             })
         };
@@ -133,7 +136,7 @@ impl TetMesh {
         put(bytemuck::cast_slice(&self.cells))?;
         put(bytemuck::cast_slice(&self.neighbors))?;
         self.fields.iter().try_for_each(|field| put(bytemuck::cast_slice(&field.values)))?;
-        to.write_all(hasher.finalize().as_bytes())
+        to.write_all(&checksum.finish_128().to_ne_bytes())
     }
 
     fn header(&self, origin: &Origin) -> Header {
@@ -220,8 +223,8 @@ impl<R: Read> CacheReader<R> {
     /// [`CacheMiss::Damaged`], if lengths, hash or indices do not fit.
     pub fn mesh(self, length: u64) -> Result<TetMesh, CacheMiss> {
         let CacheReader { from, header, start } = self;
-        let left = length.checked_sub(start + HASH as u64).ok_or(CacheMiss::Damaged)?;
-        let mut arrays = Arrays { from, left, hasher: blake3::Hasher::new() };
+        let left = length.checked_sub(start + CHECKSUM as u64).ok_or(CacheMiss::Damaged)?;
+        let mut arrays = Arrays { from, left, checksum: XxHash3_128::new() };
         header.mesh(&mut arrays).filter(|_| arrays.end()).ok_or(CacheMiss::Damaged)
     }
 }
@@ -231,26 +234,43 @@ struct Arrays<R> {
     from: R,
     /// Bytes of arrays that are still to come.
     left: u64,
-    hasher: blake3::Hasher,
+    checksum: XxHash3_128,
 }
 
 impl<R: Read> Arrays<R> {
-    /// The next `count` items; `None` if there are not so many.
-    fn take<T: Pod>(&mut self, count: usize) -> Option<Vec<T>> {
+    /// The next `count` items; `None` if there are not so many. Each part is looked at while it is near at hand.
+    fn take<T: Pod>(&mut self, count: usize, mut look: impl FnMut(&[T])) -> Option<Vec<T>> {
         let bytes = (count as u64).checked_mul(size_of::<T>() as u64)?;
         self.left = self.left.checked_sub(bytes)?;
         let mut items: Vec<T> = bytemuck::allocation::try_zeroed_vec(count).ok()?;
-        for chunk in bytemuck::cast_slice_mut::<T, u8>(&mut items).chunks_mut(CHUNK) {
-            self.from.read_exact(chunk).ok()?;
-            self.hasher.update(chunk);
+        for part in items.chunks_mut(CHUNK / size_of::<T>()) {
+            let bytes = bytemuck::cast_slice_mut(part);
+            self.from.read_exact(bytes).ok()?;
+            self.checksum.write(bytes);
+            look(part);
         }
         Some(items)
     }
 
-    /// Whether all was taken, and the hash that follows is that of what was.
+    /// The next `count` cells of indices, of which each must be below `limit` once `bias` is added.
+    fn indices(&mut self, count: usize, limit: usize, bias: u32) -> Option<Vec<[u32; 4]>> {
+        // Meshes have fewer than 2^31 of everything, so that the sign of a difference tells, for all at once.
+        let limit = i32::try_from(limit).ok()? as u32;
+        let mut signs = [0; 4];
+        let cells = self.take(count, |cells: &[[u32; 4]]| {
+            for cell in cells {
+                let index = cell.map(|index| index.wrapping_add(bias));
+                signs = [0, 1, 2, 3].map(|i| signs[i] | index[i] | limit.wrapping_sub(index[i]).wrapping_sub(1));
+            }
+        })?;
+        signs.iter().all(|&sign| sign >> 31 == 0).then_some(cells)
+    }
+
+    /// Whether all was taken, and the checksum that follows is that of what was.
     fn end(&mut self) -> bool {
-        let mut hash = [0; HASH];
-        self.left == 0 && self.from.read_exact(&mut hash).is_ok() && *self.hasher.finalize().as_bytes() == hash
+        let mut checksum = [0; CHECKSUM];
+        let all = self.left == 0 && self.from.read_exact(&mut checksum).is_ok();
+        all && self.checksum.finish_128().to_ne_bytes() == checksum
     }
 }
 
@@ -258,19 +278,15 @@ impl Header {
     /// The mesh of these arrays; `None` if they do not fit.
     fn mesh<R: Read>(self, arrays: &mut Arrays<R>) -> Option<TetMesh> {
         let (points, cells) = (usize::try_from(self.points).ok()?, usize::try_from(self.cells).ok()?);
-        let point_data: Vec<Vec3> = arrays.take(points)?;
-        let cell_data: Vec<[u32; 4]> = arrays.take(cells)?;
-        let neighbors: Vec<[u32; 4]> = arrays.take(cells)?;
-        let within = |indices: &[[u32; 4]], count: usize| indices.iter().flatten().all(|&i| (i as usize) < count);
-        let known = neighbors.iter().flatten().all(|&n| n == NONE || (n as usize) < cells);
-        if !(known && within(&cell_data, points)) {
-            return None;
-        }
+        let point_data: Vec<Vec3> = arrays.take(points, |_| ())?;
+        let cell_data = arrays.indices(cells, points, 0)?;
+        // With one added no neighbour is 0, and the others are from 1 on.
+        let neighbors = arrays.indices(cells, cells + 1, NONE.wrapping_neg())?;
         let mut fields = Vec::with_capacity(self.fields.len());
         for field in self.fields {
             let (location, tuples) = if field.at_points { (Location::Point, points) } else { (Location::Cell, cells) };
             let components = usize::try_from(field.components).ok().filter(|&n| n > 0)?;
-            let values = arrays.take(tuples.checked_mul(components)?)?;
+            let values = arrays.take(tuples.checked_mul(components)?, |_| ())?;
             fields.push(Field { name: field.name, location, components, values });
         }
         let [given, merged, differ, cells_given, repeated, inverted, flat, non_manifold, folded] =

@@ -1,6 +1,7 @@
 //! Element blocks: which cells they hold, in VTK's order of points.
 
-use super::netcdf::{NetCdf, Variable};
+use super::file::File;
+use super::netcdf::Variable;
 use crate::source::Source;
 use crate::{IngestError, MixedMesh, Place};
 
@@ -46,10 +47,10 @@ const SHAPES: &[Shape] = &[
 ];
 
 /// Adds the cells of every block of elements with volume, and notes the others.
-pub(super) fn read(source: &Source, file: &NetCdf, mesh: &mut MixedMesh) -> Result<Vec<Block>, IngestError> {
+pub(super) fn read(source: &Source, file: &File, mesh: &mut MixedMesh) -> Result<Vec<Block>, IngestError> {
     let mut connects: Vec<(u64, &Variable)> = file
         .variables()
-        .filter_map(|(name, variable)| Some((name.strip_prefix("connect")?.parse().ok()?, variable)))
+        .filter_map(|variable| Some((variable.name.strip_prefix("connect")?.parse().ok()?, variable)))
         .collect();
     connects.sort_by_key(|&(number, _)| number);
     let mut blocks = Vec::new();
@@ -83,7 +84,7 @@ pub(super) fn read(source: &Source, file: &NetCdf, mesh: &mut MixedMesh) -> Resu
 
 fn add_cells(
     source: &Source,
-    file: &NetCdf,
+    file: &File,
     mesh: &mut MixedMesh,
     number: u64,
     connect: &Variable,
@@ -97,7 +98,7 @@ fn add_cells(
         let element = at as u64 / connect.shape[1];
         let what = format!("a node number of element {element} of {name}");
         let remedy = format!("nodes are numbered from 1 to {}", mesh.points.len());
-        return Err(source.malformed(Place::Byte(connect.begin), what, ids[at], remedy));
+        return Err(source.malformed(connect.place(), what, ids[at], remedy));
     }
     // There are as many as the shape says, all in the file.
     let nodes = connect.shape[1] as usize;

@@ -30,15 +30,30 @@ pub(super) struct NetCdf<'a> {
 
 /// A named array.
 pub(super) struct Variable {
+    pub(super) name: String,
     /// Length along each dimension, the slowest first.
     pub(super) shape: Vec<u64>,
     /// Whether the first dimension is the record dimension.
     record: bool,
     kind: Kind,
-    /// Where its data begin; of a record variable those of the first record.
-    pub(super) begin: u64,
+    /// Where its data begin; of a record variable those of the first record. 0 if it is in HDF5, which finds them by
+    /// name.
+    begin: u64,
     /// Where its list of attributes is.
     attributes: u64,
+}
+
+impl Variable {
+    /// A variable in HDF5.
+    #[cfg(feature = "hdf5")]
+    pub(super) fn in_hdf5(name: String, shape: Vec<u64>) -> Variable {
+        Variable { name, shape, record: false, kind: Kind::F64, begin: 0, attributes: 0 }
+    }
+
+    /// Where an error about it lies.
+    pub(super) fn place(&self) -> Place {
+        if self.begin > 0 { Place::Byte(self.begin) } else { Place::File }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -179,7 +194,7 @@ impl<'a> NetCdf<'a> {
         let mut variables = HashMap::new();
         for _ in 0..cursor.list("variables", VARIABLES)? {
             let name = cursor.name()?;
-            let variable = variable(&mut cursor, &lengths)?;
+            let variable = variable(&mut cursor, String::from_utf8_lossy(name).into(), &lengths)?;
             variables.insert(name, variable);
         }
         let record_stride = record_stride(&variables);
@@ -204,9 +219,9 @@ impl<'a> NetCdf<'a> {
         self.variables.get(name.as_bytes())
     }
 
-    /// All variables whose name is valid text, in no order.
-    pub(super) fn variables(&self) -> impl Iterator<Item = (&'a str, &Variable)> {
-        self.variables.iter().filter_map(|(name, variable)| Some((str::from_utf8(name).ok()?, variable)))
+    /// All variables, in no order.
+    pub(super) fn variables(&self) -> impl Iterator<Item = &Variable> {
+        self.variables.values()
     }
 
     /// The text of an attribute of a variable, without the padding at its end. `None` if there is none.
@@ -283,7 +298,7 @@ impl<'a> NetCdf<'a> {
     }
 }
 
-fn variable(cursor: &mut Cursor, lengths: &[u64]) -> Result<Variable, IngestError> {
+fn variable(cursor: &mut Cursor, name: String, lengths: &[u64]) -> Result<Variable, IngestError> {
     let source = cursor.source;
     let (mut shape, mut record) = (Vec::new(), false);
     for rank in 0..cursor.count()? {
@@ -305,7 +320,7 @@ fn variable(cursor: &mut Cursor, lengths: &[u64]) -> Result<Variable, IngestErro
     // The size stated here is too small a number for large variables; the shape says it as well.
     cursor.count()?;
     let begin = cursor.number(cursor.layout.wide_offsets)?;
-    Ok(Variable { shape, record, kind, begin, attributes })
+    Ok(Variable { name, shape, record, kind, begin, attributes })
 }
 
 /// Records are the sum of their variables, each padded to four bytes unless it is the only one.
@@ -322,7 +337,7 @@ fn record_stride(variables: &HashMap<&[u8], Variable>) -> u64 {
 }
 
 /// Text that ends at its length, at a zero or before blanks.
-fn text(bytes: &[u8]) -> String {
+pub(super) fn text(bytes: &[u8]) -> String {
     let end = bytes.iter().position(|&b| b == 0).unwrap_or(bytes.len());
     String::from_utf8_lossy(&bytes[..end]).trim_end().to_string()
 }

@@ -234,7 +234,7 @@ fn what_is_wrong_is_said() {
         let message = changed(change);
         assert!(parts.iter().all(|part| message.contains(part)), "{parts:?}: {message}");
     }
-    let hdf5 = load([HDF5, &[0; 100]].concat(), None).unwrap_err().to_string();
+    let hdf5 = load([file::HDF5, &[0; 100]].concat(), None).unwrap_err().to_string();
     assert!(hdf5.contains("HDF5") && hdf5.contains("nccopy"), "{hdf5}");
 }
 
@@ -293,7 +293,7 @@ fn what_is_filled_with_nan_is_bounded() {
 fn variables_that_overlap_are_refused() {
     let file = model(1, F64, I32, true);
     let source = Source { path: "a.ex2".into(), bytes: file.bytes() };
-    let parsed = NetCdf::parse(&source).unwrap();
+    let parsed = netcdf::NetCdf::parse(&source).unwrap();
     let coord = parsed.variable("coord").unwrap();
     let within = source.bytes.len() / (3 * 9 * 8);
     for _ in 0..within {
@@ -339,6 +339,73 @@ fn files_of_another_program() {
         // Unit cubes, half of one, a third, and tetrahedra of a sixth.
         let volume = mesh.tetrahedralize(Split::Six).unwrap().validate().volume;
         assert!((volume - (2.0 + 1.0 / 2.0 + 1.0 / 3.0 + 2.0 / 6.0)).abs() < 1e-14, "{volume}");
+    }
+}
+
+#[cfg(feature = "hdf5")]
+mod in_hdf5 {
+    use super::*;
+
+    fn file() -> Vec<u8> {
+        std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/files/exodus/netcdf4.e")).unwrap()
+    }
+
+    #[test]
+    fn a_cube_at_two_times_is_read() {
+        for (time, factor) in [(None, 2.0), (Some(0), 1.0), (Some(1), 2.0)] {
+            let mesh = load(file(), time).unwrap();
+            assert_eq!(mesh.cell_counts(), [("hexahedra", 1)]);
+            let sum = mesh.points.iter().map(|p| factor * (p.x + 2.0 * p.y + 4.0 * p.z)).collect();
+            assert_eq!(mesh.fields, [tetlux_mesh::Field::point("sum", 1, sum)]);
+            assert!(mesh.notes.iter().any(|note| note.contains("time 0.5") || note.contains("time 1.5")));
+            assert_eq!(mesh.tetrahedralize(Split::Six).unwrap().validate().volume, 1.0);
+        }
+        assert!(matches!(load(file(), Some(2)), Err(IngestError::NoSuchTimeStep { step: 2, count: 2, .. })));
+    }
+
+    /// What a file ends with may be no data: then its mesh is the same.
+    #[test]
+    fn cut_anywhere_it_is_refused_or_the_same() {
+        let whole = file();
+        let mesh = load(whole.clone(), None).unwrap();
+        let mut refused = 0;
+        for length in (8..whole.len()).step_by(61) {
+            match load(whole[..length].to_vec(), None) {
+                Ok(cut) => assert_eq!((cut.points, cut.fields), (mesh.points.clone(), mesh.fields.clone()), "{length}"),
+                Err(error) => {
+                    refused += 1;
+                    assert!(error.to_string().starts_with("a.ex2: "), "{error}");
+                }
+            }
+        }
+        assert!(refused > whole.len() / 61 / 2, "{refused}");
+    }
+
+    #[test]
+    fn more_than_its_bytes_can_become_is_not_read() {
+        let bytes = file();
+        let source = Source { path: "a.ex2".into(), bytes };
+        let parsed = file::File::open(&source).unwrap();
+        let coord = parsed.variable("coordx").unwrap();
+        let within = 1032 * source.bytes.len() / (8 * 8);
+        for _ in 0..within {
+            parsed.numbers("coordx", coord, &[]).unwrap();
+        }
+        assert!(parsed.numbers("coordx", coord, &[]).unwrap_err().to_string().contains("the size of coordx"));
+    }
+
+    proptest! {
+        #![proptest_config(config())]
+
+        #[test]
+        fn damaged_files_do_not_panic(time in prop::option::of(0usize..3), damages in damages()) {
+            let mut bytes = file();
+            damages.iter().for_each(|d| d.apply(&mut bytes));
+            match load(bytes, time) {
+                Ok(mesh) => drop(mesh.tetrahedralize(Split::Six)),
+                Err(error) => prop_assert!(error.to_string().len() < 1000, "{}", error),
+            }
+        }
     }
 }
 

@@ -3,14 +3,15 @@
 use tetlux_mesh::Field;
 
 use super::blocks::Block;
-use super::netcdf::{NetCdf, Variable};
+use super::file::File;
+use super::netcdf::Variable;
 use crate::source::Source;
 use crate::{IngestError, MixedMesh, Place};
 
 /// Adds the fields, and notes those without values.
 pub(super) fn read(
     source: &Source,
-    file: &NetCdf,
+    file: &File,
     step: Option<u64>,
     blocks: &[Block],
     mesh: &mut MixedMesh,
@@ -58,7 +59,7 @@ fn check_length(source: &Source, name: &str, found: usize, expected: usize) -> R
 /// Fields on the cells; NaN in blocks that do not have the variable.
 fn element_fields(
     source: &Source,
-    file: &NetCdf,
+    file: &File,
     step: u64,
     blocks: &[Block],
     names: Vec<String>,
@@ -67,8 +68,8 @@ fn element_fields(
     // By variable, then block, both numbered from 1.
     let mut parts: Vec<(usize, &Block, &Variable)> = file
         .variables()
-        .filter_map(|(name, variable)| {
-            let (index, block) = name.strip_prefix("vals_elem_var")?.split_once("eb")?;
+        .filter_map(|variable| {
+            let (index, block) = variable.name.strip_prefix("vals_elem_var")?.split_once("eb")?;
             let block: u64 = block.parse().ok()?;
             let block = &blocks[blocks.binary_search_by_key(&block, |b| b.number).ok()?];
             Some((index.parse().ok()?, block, variable))

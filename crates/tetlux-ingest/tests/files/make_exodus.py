@@ -62,3 +62,19 @@ with tempfile.TemporaryDirectory() as temporary:
     mesh().write(original)
     for suffix in ("CLASSIC", "64BIT_OFFSET", "64BIT_DATA"):
         convert(original, folder / f"{suffix.lower()}.e", f"NETCDF3_{suffix}")
+
+# In HDF5, small as its overhead allows: a cube at two times, of which one array is compressed and shuffled.
+with netCDF4.Dataset(folder / "netcdf4.e", "w", format="NETCDF4") as file:
+    for name, size in {"len_name": 33, "time_step": 2, "num_dim": 3, "num_nodes": 8, "num_el_in_blk1": 1,
+                       "num_nod_per_el1": 8, "num_nod_var": 1}.items():
+        file.createDimension(name, size)
+    for axis, values in zip("xyz", np.array(CUBE, float).T):
+        file.createVariable(f"coord{axis}", "f8", ("num_nodes",))[:] = values
+    cells = file.createVariable("connect1", "i4", ("num_el_in_blk1", "num_nod_per_el1"))
+    cells.elem_type = "HEX8"
+    cells[:] = np.arange(1, 9)
+    names = file.createVariable("name_nod_var", "S1", ("num_nod_var", "len_name"))
+    names[0, :3] = list("sum")
+    file.createVariable("time_whole", "f8", ("time_step",))[:] = [0.5, 1.5]
+    values = file.createVariable("vals_nod_var1", "f4", ("time_step", "num_nodes"), zlib=True, chunksizes=(1, 8))
+    values[:] = np.outer([1, 2], np.array(CUBE) @ [1, 2, 4])
