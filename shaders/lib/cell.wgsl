@@ -145,8 +145,10 @@ fn project_cell(v: array<Vertex, 4>, s: vec4<f32>, parity: f32) -> Cell {
 struct Reference {
     // Pixels at which planes 1 to 3, and plane 0, have their origin.
     origins: vec4<f32>,
-    // Depth of the reference vertex, and its scalar.
+    // Depth of the reference vertex, its depth from the pivot, which keeps its digits however far away the eye is, and
+    // its scalar.
     depth: f32,
+    level: f32,
     scalar: f32,
     // w of the farthest and of the nearest vertex in front of the near plane.
     w: vec2<f32>,
@@ -170,6 +172,7 @@ fn cell_reference(v: array<Vertex, 4>, s: vec4<f32>, kind: f32) -> Reference {
     }
     reference.origins = origins;
     reference.depth = v[index].eye.z;
+    reference.level = z[index];
     let range = vec2<f32>(farthest, nearest);
     reference.w = z[index] - range;
     if !ORTHOGRAPHIC {

@@ -4,8 +4,9 @@ import package::lib::cell::{Reference};
 import package::lib::span::{Segment};
 import package::axes::quantity::{Quantity, Linear, linear_at};
 
-// The segment of the ray through `at`, in pixels from the picture's middle.
-fn cell_segment(planes: array<vec4<f32>, 4>, linear: Linear, reference: Reference, at: vec2<f32>) -> Segment {
+// w at the front and at the back end of what the ray through `at`, in pixels from the picture's middle, crosses of a
+// cell; it misses the cell unless the first is greater.
+fn cell_span(planes: array<vec4<f32>, 4>, reference: Reference, at: vec2<f32>) -> vec2<f32> {
     let from_0 = at - reference.origins.xy;
     let from_1 = at - reference.origins.zw;
     var front = reference.w.y;
@@ -20,11 +21,32 @@ fn cell_segment(planes: array<vec4<f32>, 4>, linear: Linear, reference: Referenc
             back = max(back, w);
         }
     }
+    return vec2<f32>(front, back);
+}
+
+// Depth of the middle of the segment from the pivot, in device units; `missed` where the ray misses the cell.
+fn middle_depth(planes: array<vec4<f32>, 4>, reference: Reference, at: vec2<f32>, missed: f32) -> f32 {
+    let span = cell_span(planes, reference, at);
+    if !(span.x > span.y) {
+        return missed;
+    }
+    if ORTHOGRAPHIC {
+        return reference.level - 0.5 * (span.x + span.y);
+    }
+    let closer = span / (1.0 + span);
+    return reference.level - 0.5 * reference.depth * (closer.x + closer.y);
+}
+
+// The segment of the ray through `at`, in pixels from the picture's middle.
+fn cell_segment(planes: array<vec4<f32>, 4>, linear: Linear, reference: Reference, at: vec2<f32>) -> Segment {
+    let span = cell_span(planes, reference, at);
+    let front = span.x;
+    let back = span.y;
     var segment: Segment;
     if !(front > back) {
         return segment;
     }
-    let across = from_0 * view.pixel;
+    let across = (at - reference.origins.xy) * view.pixel;
     if ORTHOGRAPHIC {
         let direction = vec3<f32>(0.0, 0.0, 1.0);
         segment.length = front - back;

@@ -36,7 +36,7 @@ pub const MODULES: &[(&str, &str)] = modules! {
     shading { post_clip post_exact preint preint_log preint_q vertex }
     source { computed stored }
     weights { average direct linear psi q symmetric }
-    stages { decompose draw project }
+    stages { decompose draw group project }
 };
 
 /// An axis and the module that stands for it.

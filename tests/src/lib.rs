@@ -42,19 +42,26 @@ pub enum Way {
     GpuCentroid,
     /// The processor, cells by centroid.
     CpuCentroid,
+    /// wgpu, in exact order.
+    GpuExact,
+    /// The processor, in exact order.
+    CpuExact,
     /// The processor, segments sorted in every pixel.
     CpuPixel,
 }
 
 impl Way {
     /// Every way there is.
-    pub const ALL: [Way; 4] = [Way::GpuNone, Way::GpuCentroid, Way::CpuCentroid, Way::CpuPixel];
+    pub const ALL: [Way; 6] =
+        [Way::GpuNone, Way::GpuCentroid, Way::CpuCentroid, Way::GpuExact, Way::CpuExact, Way::CpuPixel];
 
     fn method(self) -> Method {
         let (backend, order) = match self {
             Way::GpuNone => (Backend::Gpu, Order::None),
             Way::GpuCentroid => (Backend::Gpu, Order::Centroid),
             Way::CpuCentroid => (Backend::Cpu, Order::Centroid),
+            Way::GpuExact => (Backend::Gpu, Order::Exact),
+            Way::CpuExact => (Backend::Cpu, Order::Exact),
             Way::CpuPixel => (Backend::Cpu, Order::Pixel),
         };
         Method { backend, order, ..Method::default() }
@@ -137,8 +144,13 @@ pub fn renderer() -> &'static Renderer {
 
 /// The plan of a scene for a way of rendering.
 pub fn plan(mesh: &TetMesh, scene: &Scene, way: Way) -> Plan {
-    let scene = Scene { method: way.method(), ..scene.clone() };
-    Plan::new(&scene, mesh, renderer().device()).unwrap_or_else(|e| panic!("{way:?} cannot be planned: {e}"))
+    plan_by(mesh, scene, way.method())
+}
+
+/// The plan of a scene for a method.
+pub fn plan_by(mesh: &TetMesh, scene: &Scene, method: Method) -> Plan {
+    let scene = Scene { method, ..scene.clone() };
+    Plan::new(&scene, mesh, renderer().device()).unwrap_or_else(|e| panic!("{method:?} cannot be planned: {e}"))
 }
 
 /// The picture.

@@ -3,6 +3,7 @@
 pub(crate) mod frame;
 mod picture;
 pub(crate) mod pipelines;
+mod stretch;
 pub(crate) mod tables;
 pub(crate) mod variant;
 
@@ -14,6 +15,7 @@ use tetlux_scene::{Device, Plan};
 use crate::stage::Stages;
 use crate::{Job, RenderError, Resources};
 use pipelines::Pipelines;
+pub(crate) use stretch::LARGEST_GROUP;
 use variant::Variant;
 
 /// A graphics adapter, and its device and pipelines once they have been used.
@@ -78,21 +80,25 @@ impl Gpu {
             }
         };
         let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty());
+        let pipelines = self.pipelines(open, variant, stages)?;
+        let sorted = job.groups.iter().any(|group| group.end - group.start <= LARGEST_GROUP);
+        let groups = if sorted { Some(self.pipelines(open, variant.of_groups(), stages)?) } else { None };
+        self.check_limits(open, job)?;
+        let draw = || self.checked(open, || frame::draw(open, &variant, &pipelines, groups.as_deref(), job));
+        stages.run("draw", draw)?.map_err(|e| self.failed(e))
+    }
+
+    /// The pipelines of a variant, made when first asked for.
+    fn pipelines(&self, open: &Open, variant: Variant, stages: &mut Stages) -> Result<Arc<Pipelines>, RenderError> {
         // A panic elsewhere cannot have left the map half changed.
         let known = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).get(&variant).cloned();
-        let pipelines = match known {
-            Some(pipelines) => pipelines,
-            None => {
-                let made =
-                    stages.run("pipelines", || self.checked(open, || Pipelines::new(&open.device, variant)))??;
-                let made = Arc::new(made);
-                self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).insert(variant, made.clone());
-                made
-            }
-        };
-        self.check_limits(open, job)?;
-        let draw = || self.checked(open, || frame::draw(open, &variant, &pipelines, job));
-        stages.run("draw", draw)?.map_err(|e| self.failed(e))
+        if let Some(pipelines) = known {
+            return Ok(pipelines);
+        }
+        let made = stages.run("pipelines", || self.checked(open, || Pipelines::new(&open.device, variant)))??;
+        let made = Arc::new(made);
+        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).insert(variant, made.clone());
+        Ok(made)
     }
 
     fn open(&self) -> Result<Open, RenderError> {

@@ -74,6 +74,8 @@ pub struct Frame {
     pub resources: Resources,
     /// How the cells were ordered.
     pub order: OrderReport,
+    /// Where the picture may be wrong, found on the way.
+    pub warnings: Vec<String>,
 }
 
 /// What a picture is made of.
@@ -193,8 +195,9 @@ impl Renderer {
                 (pixels, Resources { cells: cells.len(), ..Resources::default() })
             }
         };
+        let warnings = order::doubts(&order, plan);
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
-        Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report })
+        Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report, warnings })
     }
 }
 

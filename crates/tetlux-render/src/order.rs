@@ -3,8 +3,9 @@
 use std::sync::{Mutex, PoisonError};
 
 use tetlux_order::{Method, Order, Orderer, Sampling};
-use tetlux_scene::{Order as Asked, Plan, View};
+use tetlux_scene::{Backend, Order as Asked, Plan, View};
 
+use crate::gpu::LARGEST_GROUP;
 use crate::{Model, Stages};
 
 /// The cells that the plan keeps, nearest first.
@@ -37,6 +38,33 @@ pub(crate) fn order(orderer: &Mutex<Orderer>, model: &Model, plan: &Plan, stages
         let order = orderer.order(model.mesh(), model.facts(), &sampling(&plan.view), method);
         order.filter(|cell| drawn[cell as usize])
     })
+}
+
+/// Where an order that should be exact is not, and what is done there.
+pub(crate) fn doubts(order: &Order, plan: &Plan) -> Vec<String> {
+    let report = &order.report;
+    let mut doubts = Vec::new();
+    if report.overlap_pixels > 0 {
+        doubts.push(format!(
+            "cells overlap on the rays of {} pixels ({} cells of the boundary), where no order is right: their segments \
+             are composited by the depths of their middles",
+            report.overlap_pixels, report.overlap_cells
+        ));
+    }
+    if report.folded_faces > 0 {
+        doubts.push(format!(
+            "{} faces have both their cells on one side: cells overlap there, and no order is right",
+            report.folded_faces
+        ));
+    }
+    let unsorted: u32 = order.groups.iter().map(|g| g.end - g.start).filter(|&cells| cells > LARGEST_GROUP).sum();
+    if plan.backend == Backend::Gpu && unsorted > 0 {
+        doubts.push(format!(
+            "{unsorted} cells are in cycles of more than {LARGEST_GROUP}, too many to sort for every pixel here: they are \
+             in centroid order; --backend cpu sorts any number"
+        ));
+    }
+    doubts
 }
 
 /// The rays of a view.

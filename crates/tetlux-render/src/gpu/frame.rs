@@ -7,6 +7,7 @@ use wgpu::util::DeviceExt;
 use super::Open;
 use super::picture::Picture;
 use super::pipelines::{CELL_BYTES, Pipelines};
+use super::stretch::{scissor, stretches};
 use super::tables::{Lookup, binding_of, upload};
 use super::variant::{Binding, Geometry, Variant};
 use crate::{Job, Resources};
@@ -107,16 +108,19 @@ fn tables(make: &Maker, queue: &wgpu::Queue, layout: &wgpu::BindGroupLayout, job
     make.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("tables"), layout, entries: &entries })
 }
 
-/// Draws the picture; the error is what the driver said.
+/// Draws the picture; `groups` are the pipelines of cells without an order, if there are any. The error is what the driver
+/// said.
 pub(super) fn draw(
     open: &Open,
     variant: &Variant,
     pipelines: &Pipelines,
+    groups: Option<&Pipelines>,
     job: &Job,
 ) -> Result<(Vec<[f32; 4]>, Resources), String> {
     let Open { device, queue } = open;
     let cells = job.order.len() as u32;
-    let made = Resources { pipelines: pipelines.count(), cells: job.order.len(), ..Resources::default() };
+    let pipeline_count = pipelines.count() + groups.map_or(0, Pipelines::count);
+    let made = Resources { pipelines: pipeline_count, cells: job.order.len(), ..Resources::default() };
     let make = Maker { device, made: Cell::new(made) };
     let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b as u32, make.scene(b, job))).collect();
     let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
@@ -126,9 +130,9 @@ pub(super) fn draw(
 
     let Geometry { vertices, instanced, .. } = variant.geometry();
     let batch = batch_size(&device.limits(), vertices).min(cells.max(1));
-    let projected = pipelines
-        .compute
-        .is_some()
+    let stretches = stretches(cells, if groups.is_some() { job.groups } else { &[] }, batch);
+    let projects = pipelines.compute.is_some() || groups.is_some();
+    let projected = projects
         .then(|| make.empty("projected cells", u64::from(batch) * CELL_BYTES, wgpu::BufferUsages::STORAGE));
     let picture = Picture::new(device, job.size, variant.format());
     let [texture, readback] = picture.bytes();
@@ -138,13 +142,13 @@ pub(super) fn draw(
 
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut load = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-    let mut remaining = cells;
-    // Once even without cells: the picture must be cleared.
-    loop {
-        let count = remaining.min(batch);
-        let uniform = Batch { last: remaining.saturating_sub(1), count, unused: [0; 2] };
+    for stretch in stretches {
+        let count = stretch.cells.end - stretch.cells.start;
+        let pipelines = if stretch.group { groups.unwrap_or(pipelines) } else { pipelines };
+        let uniform = Batch { last: stretch.cells.end.saturating_sub(1), count, unused: [0; 2] };
         let uniform = make.filled("batch", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
-        let buffers: Vec<_> = [&uniform].into_iter().chain(&projected).collect();
+        let projected = projected.as_ref().filter(|_| pipelines.compute.is_some());
+        let buffers: Vec<_> = [&uniform].into_iter().chain(projected).collect();
         let buffers: Vec<_> = (0u32..).zip(buffers).collect();
         if let Some(stage) = &pipelines.compute {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -169,17 +173,17 @@ pub(super) fn draw(
         if let Some(tables) = &tables {
             pass.set_bind_group(2, tables, &[]);
         }
-        if instanced {
+        if stretch.group {
+            let [x, y, width, height] = scissor(job, &stretch.cells);
+            pass.set_scissor_rect(x, y, width, height);
+            pass.draw(0..3, 0..1);
+        } else if instanced {
             pass.draw(0..vertices, 0..count);
         } else {
             pass.draw(0..vertices * count, 0..1);
         }
         drop(pass);
         load = wgpu::LoadOp::Load;
-        remaining -= count;
-        if remaining == 0 {
-            break;
-        }
     }
     picture.copy(&mut encoder);
     queue.submit([encoder.finish()]);

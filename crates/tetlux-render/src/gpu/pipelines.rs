@@ -97,7 +97,7 @@ impl Pipelines {
         let projected = compute.is_some().then_some((1, stages, storage));
         let batch: Vec<_> = [(0, stages, uniform)].into_iter().chain(projected).collect();
         let batch = layout("batch, read", &batch);
-        let module = shader("stages::draw")?;
+        let module = shader(variant.stage())?;
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("draw"),
             layout: Some(&pipeline_layout(&batch, tables.as_ref())),

@@ -6,6 +6,8 @@ use tetlux_shaders::{Choice, DEFAULTS, choose};
 /// What makes one set of pipelines differ from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Variant {
+    /// It draws cells without an order among themselves, sorted for every pixel.
+    pub(crate) group: bool,
     pub(crate) orthographic: bool,
     pub(crate) cell_data: bool,
     pub(crate) projection: CellProjection,
@@ -41,6 +43,7 @@ pub(crate) enum Binding {
 impl Variant {
     pub(crate) fn new(plan: &Plan, cell_data: bool) -> Variant {
         Variant {
+            group: false,
             orthographic: plan.view.orthographic,
             cell_data,
             projection: plan.projection,
@@ -49,6 +52,16 @@ impl Variant {
             classification: plan.classification,
             target: plan.target,
         }
+    }
+
+    /// The same for groups: whatever the projection, each pixel finds its own segments.
+    pub(crate) fn of_groups(self) -> Variant {
+        Variant { group: true, projection: CellProjection::Pt, interpolation: Interpolation::Ray, ..self }
+    }
+
+    /// The stage that draws.
+    pub(crate) fn stage(&self) -> &'static str {
+        if self.group { "stages::group" } else { "stages::draw" }
     }
 
     /// The modules that stand for the axes of the shaders.
