@@ -117,33 +117,6 @@ pub(crate) fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// For tests: writes a text in place of the n-th run of digits, if there are so many.
-#[cfg(test)]
-pub(crate) fn replace_number(bytes: &mut Vec<u8>, n: usize, text: &str) {
-    let starts = |i: usize| bytes[i].is_ascii_digit() && (i == 0 || !bytes[i - 1].is_ascii_digit());
-    if let Some(start) = (0..bytes.len()).filter(|&i| starts(i)).nth(n) {
-        let length = bytes[start..].iter().take_while(|b| b.is_ascii_digit()).count();
-        bytes.splice(start..start + length, text.bytes());
-    }
-}
-
-/// For tests: numbers that a count, an index or a value should not be.
-#[cfg(test)]
-pub(crate) const HOSTILE: [&str; 12] = [
-    "0",
-    "1",
-    "-1",
-    "255",
-    "4294967295",
-    "4294967296",
-    "3037000500",
-    "9223372036854775807",
-    "18446744073709551616",
-    "1e400",
-    "nan",
-    "",
-];
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -173,6 +173,8 @@ mod tests {
         let mesh = mesh(vec![Field::point("void", 1, vec![f64::NAN; 5]), Field::cell("rank", 1, vec![0.0, 1.0])]);
         let refuse = |name, component| mesh.scalar(name, component).unwrap_err();
         assert!(matches!(refuse("void", Component::Magnitude), MeshError::NoData { count: 5, .. }));
+        let message = refuse("void", Component::Magnitude).to_string();
+        assert!(message.contains("\"void\" holds no finite value") && message.contains("\"rank\" (cells"), "{message}");
         assert!(matches!(
             refuse("rank", Component::Index(1)),
             MeshError::NoComponent { components: 1, component: 1, .. }

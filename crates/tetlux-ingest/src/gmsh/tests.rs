@@ -4,9 +4,8 @@ use tetlux_mesh::Field;
 use tetlux_mesh::procedural::Split;
 
 use super::{element, read};
-use crate::damage::{config, damages};
+use crate::damage::{HOSTILE, config, damages, replace_number};
 use crate::source::Source;
-use crate::words::{HOSTILE, replace_number};
 use crate::{IngestError, MixedMesh};
 
 /// How a file is written.

@@ -6,9 +6,8 @@ use tetlux_mesh::Field;
 use tetlux_mesh::procedural::Split;
 
 use super::{EDGES, read};
-use crate::damage::{config, damages};
+use crate::damage::{HOSTILE, config, damages, replace_number};
 use crate::source::{Files, Source};
-use crate::words::{HOSTILE, replace_number};
 use crate::{IngestError, MixedMesh};
 
 const NODES: &str = "# a comment\n\n4 3 2 1\n\

@@ -4,9 +4,8 @@ use tetlux_mesh::procedural::Split;
 use tetlux_mesh::{Field, Location};
 
 use super::read;
-use crate::damage::{config, damages};
+use crate::damage::{HOSTILE, config, damages, replace_number};
 use crate::source::Source;
-use crate::words::{HOSTILE, replace_number};
 use crate::{IngestError, MixedCells, MixedMesh};
 
 /// Writes files in one of the encodings.

@@ -2,6 +2,8 @@
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test's helpers fail and tell like the test")]
 
 mod cached;
+#[path = "../../src/damage.rs"]
+mod damage;
 mod hostile;
 mod legacy;
 mod plot3d;

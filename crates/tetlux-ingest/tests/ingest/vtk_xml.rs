@@ -8,7 +8,8 @@ use tetlux_ingest::{IngestError, MixedMesh, ReadOptions, Split, read};
 use tetlux_mesh::{Field, Location};
 
 use crate::assert_volume;
-use crate::hostile::{damage, survives};
+use crate::damage::damages;
+use crate::hostile::survives;
 use crate::writers::Folder;
 
 fn files() -> PathBuf {
@@ -429,7 +430,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn damaged_files_do_not_panic(which in 0..ALONE.len(), damages in prop::collection::vec(damage(), 1..4)) {
+    fn damaged_files_do_not_panic(which in 0..ALONE.len(), damages in damages()) {
         let mut bytes = std::fs::read(files().join(ALONE[which])).unwrap();
         damages.iter().for_each(|d| d.apply(&mut bytes));
         survives(&bytes, None);
