@@ -102,12 +102,12 @@ impl SceneArgs {
         self.override_scene(&mut file)?;
         let mesh_path = mesh.map(Path::to_path_buf).or(file.mesh.clone());
         let mesh = match mesh_path {
-            None if path.is_none() => progress::during("making the built-in mesh", || {
+            None if path.is_none() || file.built_in => progress::during("making the built-in mesh", || {
                 let wing = procedural::wing(BUILT_IN_SEED, BUILT_IN_CELLS);
                 TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])
             })?,
             None => bail!(
-                "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" under [mesh]",
+                "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" or built_in = true under [mesh]",
                 file.name
             ),
             Some(path) => {
@@ -182,7 +182,7 @@ pub(crate) fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "picture".into(), |s| s.to_string_lossy().into_owned())
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     match sides {
         Some(size) if size.iter().all(|n| (1..=tetlux_image::MAX_SIDE).contains(n)) => Ok(size),

@@ -22,13 +22,17 @@ mod camera;
 mod document;
 mod error;
 mod file;
+mod frequency;
+mod histogram;
 mod method;
 mod plan;
 mod view;
 
 pub use camera::{Camera, Projection};
 pub use error::SceneError;
-pub use file::{CameraSpec, FieldSpec, NodeRange, SceneFile, TransferSource, UnitDistance};
+pub use file::{CameraSpec, FieldSpec, NodeRange, SceneFile, TransferSource, UnitDistance, gradient_magnitude};
+pub use frequency::{FrequencyLimits, frequency_limits};
+pub use histogram::{Histogram, MAX_BINS};
 pub use method::{Backend, Integrator, Method, Order, UnknownName, parse_name};
 pub use plan::{Device, Plan, Skips};
 pub use view::View;
