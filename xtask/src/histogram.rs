@@ -26,6 +26,12 @@ pub(crate) struct Args {
     /// Bins along x and y
     #[arg(long, value_name = "WxH", default_value = "400x300", value_parser = crate::input::parse_size)]
     bins: [u32; 2],
+    /// What x spans, such as 0,1.5 [default: its field's range]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
+    x_range: Option<[f64; 2]>,
+    /// What y spans [default: its field's range, which few steep cells may stretch far]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
+    y_range: Option<[f64; 2]>,
     /// PNG to write, a pixel a bin; an SVG with axes goes beside it [default: out/SCENE-histogram.png]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -41,6 +47,7 @@ struct Figures {
     bins: [usize; 2],
     volume: f64,
     volume_without_data: f64,
+    volume_outside: f64,
     /// Bands per unit of each field: for every cell, 99 of 100, half.
     frequencies: [Option<[f64; 3]>; 2],
     files: [String; 2],
@@ -57,7 +64,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         }
     };
     let scalars = [&scene.scalar, &second];
-    let histogram = progress::during("counting", || Histogram::new(mesh, scalars, args.bins.map(|n| n as usize)))?;
+    let (given, bins) = ([args.x_range, args.y_range], args.bins.map(|n| n as usize));
+    let histogram = progress::during("counting", || Histogram::new(mesh, scalars, given, bins))?;
     let png = args.output.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{}-histogram.png", input.name)));
     create_folder(&png)?;
     write_png(&histogram.picture(&scene.classification)?, &png, Encoding::Srgb)?;
@@ -75,6 +83,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if histogram.without_data > 0.0 {
         say!("{:<16} a volume of {:.4e}", "without data", histogram.without_data);
     }
+    if histogram.outside > 0.0 {
+        say!("{:<16} a volume of {:.4e}", "outside", histogram.outside);
+    }
     let files = [png.display().to_string(), svg.display().to_string()];
     say!("{}", files.join("\n"));
     if let Some(path) = &args.json {
@@ -84,12 +95,18 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             bins: histogram.bins,
             volume: histogram.volumes.iter().sum(),
             volume_without_data: histogram.without_data,
+            volume_outside: histogram.outside,
             frequencies: limits.map(|limits| limits.map(|l| [l.all, l.most, l.half])),
             files,
         };
         write_json(path, &figures)?;
     }
     Ok(())
+}
+
+fn parse_range(text: &str) -> Result<[f64; 2], String> {
+    let ends = text.split_once(',').and_then(|(low, high)| Some([low.trim().parse().ok()?, high.trim().parse().ok()?]));
+    ends.ok_or_else(|| format!("\"{text}\" is not a range such as 0,1.5"))
 }
 
 /// How many bands over its range a field bears under the published form of waves, which takes one a cell.

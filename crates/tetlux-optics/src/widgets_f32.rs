@@ -24,7 +24,7 @@
 //! h^3 alpha d M / 96 + h^4 (d L L R / 240 + d L M / 384) + h^5 e d L^3 / 512,   h^2 L <= 8
 //! ```
 //!
-//! [`pieces`] is the smallest such n, so the bound holds always; besides, no colour leaves the range of the colours.
+//! [`integrate`] takes about the smallest such n, so the bound holds always; besides, no colour leaves the range of the colours.
 
 #[cfg(test)]
 mod tests;

@@ -18,8 +18,11 @@ pub const MAX_BINS: usize = 4096;
 /// Sampling of a cell stops at this many points along an edge.
 const FINEST: usize = 16;
 
+/// Bins by which rounding may put a value past the end of its own range.
+const ROUNDING: f64 = 1e-6;
+
 /// Brightness of the least volume that is drawn, as a power of ten below the largest.
-const DECADES: f64 = 6.0;
+const DECADES: f64 = 8.0;
 
 /// Volumes over a grid of bins.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,10 +35,12 @@ pub struct Histogram {
     pub range: [[f64; 2]; 2],
     /// Volume of the cells without data.
     pub without_data: f64,
+    /// Volume whose values lie outside the range.
+    pub outside: f64,
 }
 
 impl Histogram {
-    /// The volume-weighted histogram of a mesh over the ranges of two of its scalars.
+    /// The volume-weighted histogram of a mesh over two of its scalars, each over the range given, else its own.
     ///
     /// A cell is sampled at the points of a regular lattice inside, each with an equal share of its volume, twice as
     /// many along an edge as the cell spans bins, 4 to 16: so a cell in one bin is exact, one that spans many is good to
@@ -45,7 +50,12 @@ impl Histogram {
     /// # Errors
     ///
     /// A number of bins of 0 or above [`MAX_BINS`], a scalar that is not this mesh's.
-    pub fn new(mesh: &TetMesh, scalars: [&ScalarField; 2], bins: [usize; 2]) -> Result<Histogram, SceneError> {
+    pub fn new(
+        mesh: &TetMesh,
+        scalars: [&ScalarField; 2],
+        given: [Option<[f64; 2]>; 2],
+        bins: [usize; 2],
+    ) -> Result<Histogram, SceneError> {
         if bins.iter().any(|n| !(1..=MAX_BINS).contains(n)) {
             return Err(SceneError::Method(format!("{bins:?} bins: each axis takes 1 to {MAX_BINS}")));
         }
@@ -58,19 +68,24 @@ impl Histogram {
                 return Err(SceneError::Method(format!("the field \"{}\" belongs to another mesh", scalar.name)));
             }
         }
-        let range = scalars.map(|s| {
-            let [low, high] = s.range;
-            if low < high { [low, high] } else { [low - 0.5, low + 0.5] }
+        if let Some([low, high]) =
+            given.into_iter().flatten().find(|[low, high]| low >= high || !(high - low).is_finite())
+        {
+            return Err(SceneError::Method(format!("the range {low} to {high} must ascend and be finite")));
+        }
+        let range = [0, 1].map(|axis| {
+            let [low, high] = scalars[axis].range;
+            given[axis].unwrap_or(if low < high { [low, high] } else { [low - 0.5, low + 0.5] })
         });
         let lattices: Vec<Vec<[f64; 4]>> = (0..=FINEST).map(lattice).collect();
         // Chunks of fixed size, summed in their order: threads change nothing.
         let size = mesh.cells().len().div_ceil(32).max(1);
-        let parts: Vec<(Vec<f64>, f64)> = mesh
+        let parts: Vec<(Vec<f64>, [f64; 2])> = mesh
             .cells()
             .par_chunks(size)
             .enumerate()
             .map(|(chunk, cells)| {
-                let (mut volumes, mut missing) = (vec![0.0; bins[0] * bins[1]], 0.0);
+                let (mut volumes, mut missing, mut outside) = (vec![0.0; bins[0] * bins[1]], 0.0, 0.0);
                 for (k, cell) in cells.iter().enumerate() {
                     let volume = volume_of(mesh, cell);
                     let values = scalars.map(|scalar| match scalar.location {
@@ -93,27 +108,31 @@ impl Histogram {
                     let points = &lattices[(2 * span[0].max(span[1]).ceil() as usize + 2).clamp(4, FINEST)];
                     let share = volume / points.len() as f64;
                     for weights in points {
-                        let [i, j] = [0, 1].map(|axis| {
-                            let place: f64 = (0..4).map(|v| weights[v] * places[axis][v]).sum();
-                            (place.max(0.0) as usize).min(bins[axis] - 1)
-                        });
+                        let at = [0, 1].map(|axis| (0..4).map(|v| weights[v] * places[axis][v]).sum::<f64>());
+                        if (0..2).any(|axis| at[axis] < -ROUNDING || at[axis] > bins[axis] as f64 + ROUNDING) {
+                            outside += share;
+                            continue;
+                        }
+                        let [i, j] = [0, 1].map(|axis| (at[axis].max(0.0) as usize).min(bins[axis] - 1));
                         volumes[j * bins[0] + i] += share;
                     }
                 }
-                (volumes, missing)
+                (volumes, [missing, outside])
             })
             .collect();
-        let mut histogram = Histogram { volumes: vec![0.0; bins[0] * bins[1]], bins, range, without_data: 0.0 };
-        for (volumes, missing) in parts {
+        let mut histogram =
+            Histogram { volumes: vec![0.0; bins[0] * bins[1]], bins, range, without_data: 0.0, outside: 0.0 };
+        for (volumes, [missing, outside]) in parts {
             for (sum, volume) in histogram.volumes.iter_mut().zip(volumes) {
                 *sum += volume;
             }
             histogram.without_data += missing;
+            histogram.outside += outside;
         }
         Ok(histogram)
     }
 
-    /// Brightness of a bin on a logarithmic scale: 1 for the largest volume, 0 for a millionth of it or less.
+    /// Brightness of a bin on a logarithmic scale: 1 for the largest volume, 0 for 1e-8 of it or less.
     pub fn level(&self, column: usize, row: usize) -> f64 {
         let largest = self.volumes.iter().copied().fold(0.0, f64::max);
         let volume = self.volumes[row * self.bins[0] + column];
@@ -144,12 +163,12 @@ impl Histogram {
             for column in 0..width {
                 let volume = self.volumes[row * width + column];
                 let level = if volume > 0.0 { (1.0 + (volume / largest).log10() / DECADES).max(0.0) } else { 0.0 };
-                let grey = 0.004 + 0.5 * level * level;
+                let grey = 0.004 + 0.7 * level * level;
                 let center = self.center(column, row);
                 // Faint ones are seen too.
                 let share = if most > 0.0 { 0.75 * (classification.opacity(center) / most).sqrt() } else { 0.0 };
                 let color = classification.luminance(center);
-                let mix = |c: usize| (grey * (1.0 - share) + color[c].min(1.0) * share * (0.35 + 0.65 * level)) as f32;
+                let mix = |c: usize| (grey * (1.0 - share) + color[c].min(1.0) * share * (0.2 + 0.8 * level)) as f32;
                 pixels.push([mix(0), mix(1), mix(2), 1.0]);
             }
         }

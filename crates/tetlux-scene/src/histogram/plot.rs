@@ -132,8 +132,13 @@ mod tests {
 
     #[test]
     fn outlines_lie_where_the_widgets_do() {
-        let histogram =
-            Histogram { volumes: vec![1.0], bins: [1, 1], range: [[0.0, 2.0], [0.0, 1.0]], without_data: 0.0 };
+        let histogram = Histogram {
+            volumes: vec![1.0],
+            bins: [1, 1],
+            range: [[0.0, 2.0], [0.0, 1.0]],
+            without_data: 0.0,
+            outside: 0.0,
+        };
         let gaussian = Shape::Gaussian { center: [1.0, 0.25], sigma: [0.5, 0.1] };
         let support = Rectangle { s: [0.0, 1.0], g: [0.5, f64::INFINITY] };
         let widgets = vec![
