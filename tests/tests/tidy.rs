@@ -212,16 +212,22 @@ fn direction_faults(metadata: &Value, forbidden: &[(&str, &[&str])]) -> Vec<Stri
     faults
 }
 
-/// Uses of optics' segment integrals: by path, in a group, by glob or under another name.
+/// Modules of optics that hold integrals, by how their names begin; those of shaders' twins end alike.
+const INTEGRALS: [&str; 4] = ["segment", "widget_integral", "emission", "published"];
+
+/// Uses of optics' integrals: by path, in a group, by glob or under another name.
 fn closed_form_faults(path: &str, text: &str) -> Vec<String> {
+    let integral = |item: &str| {
+        let module = item.split("::").next().unwrap_or_default();
+        INTEGRALS.iter().any(|start| module.starts_with(start)) || module.ends_with("_f32")
+    };
     let uses = text.match_indices("tetlux_optics").filter(|(at, name)| {
         let after: String = text[at + name.len()..].split(';').next().unwrap_or_default().split_whitespace().collect();
         let group = after.strip_prefix("::{").is_some_and(|group| {
-            group
-                .split([',', '{', '}'])
-                .any(|item| item.starts_with("segment") || item == "*" || item.starts_with("self"))
+            group.split([',', '{', '}']).any(|item| integral(item) || item == "*" || item.starts_with("self"))
         });
-        group || ["::segment", "::*", "as"].iter().any(|start| after.starts_with(start))
+        let path = after.strip_prefix("::").is_some_and(integral);
+        group || path || ["::*", "as"].iter().any(|start| after.starts_with(start))
     });
     uses.map(|(at, _)| format!("{}: optics' closed forms", place(path, text, at))).collect()
 }
@@ -402,6 +408,7 @@ mod planted {
         for sound in [
             "use tetlux_optics::transfer::TransferFunction;",
             "use tetlux_optics::{transfer, preset::{read}}; let segment = 1;",
+            "use tetlux_optics::widget::{Shape, Widget};",
         ] {
             assert_eq!(closed_form_faults("a.rs", sound), [""; 0], "{sound}");
         }
@@ -409,6 +416,8 @@ mod planted {
             "use tetlux_optics::segment::segment;",
             "tetlux_optics :: segment_f32::weights(1.0)",
             "use tetlux_optics::{transfer,\n    segment};",
+            "use tetlux_optics::widget_integral::optical_depth;",
+            "use tetlux_optics::{transfer, widgets_f32::integrate};",
             "use tetlux_optics::*;",
             "use tetlux_optics as optics;",
         ] {

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use serde::Serialize;
-use tetlux_mesh::{Check, Component};
+use tetlux_mesh::{Check, Component, ScalarField, TetMesh};
 use tetlux_order::Facts;
+use tetlux_scene::{FrequencyLimits, frequency_limits, gradient_magnitude};
 
 use crate::mesh_args::MeshArgs;
 use crate::order::FactsReport;
@@ -15,12 +16,19 @@ use crate::report::write_json;
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   cargo xtask info mesh.vtu
+  cargo xtask info mesh.vtu --field pressure
   cargo xtask info bluntfinxyz.bin --solution bluntfinq.bin --split 5";
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Mesh file: VTK (XML or legacy), Exodus II, Gmsh, TetGen, PLOT3D; or a closed surface: OBJ, STL
     file: PathBuf,
+    /// Say too how many bands a transfer function may have over this field and its gradient's magnitude, one a cell
+    #[arg(long, value_name = "NAME")]
+    field: Option<String>,
+    /// Component of a vector field, from 0; default its magnitude
+    #[arg(long, value_name = "I", requires = "field")]
+    component: Option<usize>,
     #[command(flatten)]
     mesh: MeshArgs,
     /// Write every figure as JSON
@@ -47,6 +55,27 @@ struct Info {
     ordering: FactsReport,
     faults: Vec<String>,
     fields: Vec<FieldInfo>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    bands: Vec<Bands>,
+}
+
+/// Highest frequencies of bands at which no cell holds more than one.
+#[derive(Serialize)]
+struct Bands {
+    field: String,
+    range: [f64; 2],
+    #[serde(skip)]
+    limits: Option<FrequencyLimits>,
+    /// Bands a unit: for every cell, for 99 of 100, for half.
+    per_unit: Option<[f64; 3]>,
+}
+
+impl Bands {
+    fn new(mesh: &TetMesh, scalar: &ScalarField) -> Bands {
+        let limits = frequency_limits(&mesh.scalar_ranges(scalar));
+        let per_unit = limits.map(|l| [l.all, l.most, l.half]);
+        Bands { field: scalar.name.clone(), range: scalar.range, limits, per_unit }
+    }
 }
 
 #[derive(Serialize)]
@@ -81,7 +110,16 @@ pub(crate) fn run(args: &Args) -> Result<()> {
                 not_finite: field.values.iter().filter(|v| !v.is_finite()).count(),
             }
         });
-        Info {
+        let bands = match &args.field {
+            None => Vec::new(),
+            Some(name) => {
+                let scalar = mesh.scalar(name, args.component.map_or(Component::Magnitude, Component::Index))?;
+                let magnitude = gradient_magnitude(&scalar, &mesh.vertex_gradients(&scalar));
+                [scalar, magnitude].iter().map(|scalar| Bands::new(&mesh, scalar)).collect()
+            }
+        };
+        Ok::<_, tetlux_mesh::MeshError>(Info {
+            bands,
             file: args.file.display().to_string(),
             cells_by_type: loaded.cell_counts,
             notes: loaded.notes,
@@ -99,8 +137,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             ordering: FactsReport::new(&Facts::new(&mesh)),
             faults: report.faults(),
             fields: fields.collect(),
-        }
-    });
+        })
+    })?;
     info.print();
     if let Some(path) = &args.json {
         write_json(path, &info)?;
@@ -146,6 +184,10 @@ impl Info {
             for (i, component) in field.ranges[1..].iter().enumerate() {
                 row("", format!("  component {i}: {}", range(component)));
             }
+        }
+        for bands in &self.bands {
+            row("bands over", format!("\"{}\": {} to {}", bands.field, bands.range[0], bands.range[1]));
+            crate::histogram::print_limits(bands.limits.as_ref(), bands.range[1] - bands.range[0]);
         }
         for note in &self.notes {
             row("note", note.clone());

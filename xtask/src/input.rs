@@ -120,7 +120,7 @@ impl SceneArgs {
         self.override_scene(&mut file)?;
         let mesh_path = mesh.map(Path::to_path_buf).or(file.mesh.clone());
         let mesh = match mesh_path {
-            None if path.is_none() => {
+            None if path.is_none() || file.built_in => {
                 if let Some(flag) = self.file.of_a_file() {
                     bail!("{flag} is for a mesh file, and none is named: name one, or leave the flag out");
                 }
@@ -130,7 +130,7 @@ impl SceneArgs {
                 })?
             }
             None => bail!(
-                "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" under [mesh]",
+                "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" or built_in = true under [mesh]",
                 file.name
             ),
             Some(path) => {
@@ -219,7 +219,7 @@ pub(crate) fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "picture".into(), |s| s.to_string_lossy().into_owned())
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     match sides {
         Some(size) if size.iter().all(|n| (1..=tetlux_image::MAX_SIDE).contains(n)) => Ok(size),

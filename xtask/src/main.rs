@@ -6,6 +6,7 @@ mod output;
 mod build_tables;
 mod cache;
 mod compare;
+mod histogram;
 mod info;
 mod input;
 mod mesh_args;
@@ -39,6 +40,9 @@ enum Command {
     /// Build the tables of ray-segment integrals, and state the error of each
     #[command(after_help = build_tables::EXAMPLES)]
     BuildTables(build_tables::Args),
+    /// Draw how much of a mesh lies where over its two fields, with the scene's widgets, and say how narrow bands may be
+    #[command(after_help = histogram::EXAMPLES)]
+    Histogram(histogram::Args),
     /// Say what a mesh file holds, and what is wrong with it
     #[command(after_help = info::EXAMPLES)]
     Info(info::Args),
@@ -57,6 +61,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args).map(|()| true),
         Command::Compare(args) => compare::run(&args),
         Command::BuildTables(args) => build_tables::run(&args),
+        Command::Histogram(args) => histogram::run(&args).map(|()| true),
         Command::Info(args) => info::run(&args).map(|()| true),
         Command::Cache(args) => cache::run(&args).map(|()| true),
         Command::Order(args) => order::run(&args),

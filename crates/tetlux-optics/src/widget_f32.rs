@@ -263,6 +263,14 @@ pub fn next_kink(track: &Track, u: f32) -> f32 {
     (0.5 * half - track.start) / track.step
 }
 
+/// About how many kinks a track has where it is seen.
+pub fn kinks(track: &Track) -> f32 {
+    if track.kind != TRIANGLE && track.kind != ABS_SINE {
+        return 0.0;
+    }
+    2.0 * (track.step * (track.to - track.from)).abs()
+}
+
 /// Bounds of the first and the second derivative of [`track_rate`] in u where the track is seen and has no kink.
 pub fn track_slopes(track: &Track) -> [f32; 2] {
     let step = track.step.abs();

@@ -45,6 +45,8 @@ struct Document {
 #[serde(deny_unknown_fields)]
 struct Mesh {
     path: Option<PathBuf>,
+    #[serde(default)]
+    built_in: bool,
     solution: Option<PathBuf>,
     split: Option<Spanned<u32>>,
 }
@@ -139,6 +141,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
     Ok(SceneFile {
         title,
         mesh: mesh.path.map(beside),
+        built_in: mesh.built_in,
         solution: mesh.solution.map(beside),
         split: mesh.split.map(Spanned::into_inner),
         field: field.name,

@@ -19,6 +19,8 @@ pub struct SceneFile {
     pub title: String,
     /// The mesh file, if the scene names one.
     pub mesh: Option<PathBuf>,
+    /// Where no mesh file is named, the mesh is the program's own: a pair of vortices over a delta wing.
+    pub built_in: bool,
     /// The PLOT3D solution that goes with it.
     pub solution: Option<PathBuf>,
     /// Tetrahedra a hexahedron becomes: 5 or 6.
@@ -271,8 +273,9 @@ fn with_width([lowest, highest]: [f64; 2]) -> [f64; 2] {
     if lowest == highest { [lowest, lowest + lowest.abs().max(1.0)] } else { [lowest, highest] }
 }
 
-/// The magnitude of a gradient at every point; linear in each cell, as Song et al. 2009 have it.
-fn gradient_magnitude(scalar: &ScalarField, gradients: &[DVec3]) -> ScalarField {
+/// The magnitude of a scalar's gradient at every point, from the gradients there ([`TetMesh::vertex_gradients`]): linear
+/// in each cell, as Song et al. 2009 have it.
+pub fn gradient_magnitude(scalar: &ScalarField, gradients: &[DVec3]) -> ScalarField {
     let values: Vec<f64> = gradients.iter().map(|gradient| gradient.length()).collect();
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));

@@ -22,6 +22,8 @@ mod camera;
 mod document;
 mod error;
 mod file;
+mod frequency;
+mod histogram;
 mod method;
 mod plan;
 mod reason;
@@ -29,7 +31,9 @@ mod view;
 
 pub use camera::{Camera, Projection};
 pub use error::SceneError;
-pub use file::{CameraSpec, FieldSpec, NodeRange, SceneFile, TransferSource, UnitDistance};
+pub use file::{CameraSpec, FieldSpec, NodeRange, SceneFile, TransferSource, UnitDistance, gradient_magnitude};
+pub use frequency::{FrequencyLimits, frequency_limits};
+pub use histogram::{Histogram, MAX_BINS};
 pub use method::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, TablePrecision, Target,
     UnknownName, parse_name,

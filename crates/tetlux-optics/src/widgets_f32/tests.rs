@@ -141,6 +141,20 @@ fn the_published_limit_is_one_peak_of_one_widget() {
 }
 
 #[test]
+fn more_periods_than_pieces_still_mix_their_colors() {
+    // Red throughout and a green wave of 5000.5 periods: half as much of it in the mean.
+    let shape = Shape::Wave { profile: WaveProfile::Triangle, frequency: [5000.5, 0.0], offset: 0.25 };
+    let wave = crate::widget::Widget::new(shape, None, 1.0, [0.0, 1.0, 0.0]).unwrap();
+    let fog = crate::widget::Widget::new(Shape::Uniform, None, 1.0, [1.0, 0.0, 0.0]).unwrap();
+    let device = pack(&BivariateFunction { widgets: vec![wave, fog] }, UNIT, 1.0);
+    let got = integrate(&device, [0.0; 2], [1.0; 2], 2.0, 1e-4);
+    let alpha = 1.0 - (-3.0_f64).exp();
+    // A period is a ten-thousandth of the depth.
+    assert!((f64::from(got.color[0]) - alpha * 2.0 / 3.0).abs() < 1e-3, "{got:?}");
+    assert!((f64::from(got.color[1]) - alpha / 3.0).abs() < 1e-3 && got.pieces <= MAX_PIECES + 1, "{got:?}");
+}
+
+#[test]
 fn empty_segments_and_no_widgets() {
     assert_eq!(integrate(&[], [0.0; 2], [1.0; 2], 1.0, 1e-3), Integrated::default());
     let device = pack(&random_function(&mut Random::new(1)), UNIT, 1.0);
