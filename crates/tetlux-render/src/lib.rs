@@ -45,7 +45,7 @@ pub use stage::{Stage, Stages};
 use std::ops::Range;
 
 use tetlux_image::Image;
-use tetlux_mesh::TetMesh;
+use tetlux_mesh::{ScalarField, TetMesh};
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::Eye;
 use tetlux_scene::{Backend, Device, Integrator, Order, Plan, Scene};
@@ -66,6 +66,7 @@ pub struct Frame {
 /// What a picture is made of.
 struct Job<'a> {
     mesh: &'a DeviceMesh,
+    scalar: &'a ScalarField,
     lens: Lens,
     eye: EyeSpace,
     pieces: &'a [Piece],
@@ -130,6 +131,7 @@ impl Renderer {
         let everything = [0..order.len() as u32];
         let job = Job {
             mesh: &device_mesh,
+            scalar: &scene.scalar,
             lens,
             eye: EyeSpace::new(view, mesh, &device_mesh),
             pieces: &pieces,

@@ -41,6 +41,7 @@ impl Drawing {
     fn draw(&self, level: Level, order: &[u32], groups: &[Range<u32>], max_error: f64) -> Vec<[f32; 4]> {
         let job = Job {
             mesh: &self.device,
+            scalar: &self.scene.scalar,
             lens: self.lens(),
             eye: EyeSpace::new(&self.view, &self.mesh, &self.device),
             pieces: &self.pieces(),
