@@ -1,8 +1,12 @@
 //! Direct volume rendering of tetrahedral meshes on wgpu and on the CPU.
 //!
-//! Both back ends project cells and composite, for every pixel, the exact integral along its ray through each cell:
-//! the CPU back end is the twin of the shaders. Which is used, and in which order cells are composited, the
-//! [`Plan`] says.
+//! Both back ends project cells and composite, for every pixel, the exact integral along its ray through each cell.
+//! Which is used, and in which order cells are composited, the [`Plan`] says.
+//!
+//! The CPU back end bins cells into tiles of pixels and draws vectors of pixels, with the best instruction set that the
+//! processor has: pictures are the same bit for bit every time and on any number of threads, and may differ by roundings
+//! between instruction sets. It leaves out what lies behind pixels whose transmittance is below a thousandth of the
+//! scene's `max_error`: a pixel changes by less than that share of it.
 //!
 //! ```
 //! use tetlux_mesh::{Field, TetMesh, procedural};
@@ -128,7 +132,7 @@ impl Renderer {
             Integrator::Direct => Weights::Direct,
             Integrator::Average => Weights::Average,
         };
-        let everything = [0..order.len() as u32];
+        let everything = 0..order.len() as u32;
         let job = Job {
             mesh: &device_mesh,
             scalar: &scene.scalar,
@@ -137,7 +141,7 @@ impl Renderer {
             pieces: &pieces,
             weights,
             order: &order,
-            groups: if plan.order == Order::Pixel { &everything } else { &[] },
+            groups: if plan.order == Order::Pixel { std::slice::from_ref(&everything) } else { &[] },
             max_error: scene.method.max_error,
             size: view.size,
         };

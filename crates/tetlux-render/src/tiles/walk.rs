@@ -184,7 +184,7 @@ impl<'a, S: Simd> Walk<'a, S> {
                 };
                 seen |= least.simd_gt(0.0).to_bitmask() << first;
             }
-            y = y + step;
+            y += step;
         }
         seen & boxed
     }
