@@ -27,9 +27,7 @@ impl DeviceMesh {
     pub(crate) fn new(mesh: &TetMesh, scalar: &ScalarField) -> DeviceMesh {
         let bounds = mesh.local_bounds();
         let scale = unit_scale((bounds[1] - bounds[0]).max_element());
-        let [low, high] = scalar.range;
-        let width = if high > low { high - low } else { 1.0 };
-        let normalise = |s: f64| if s.is_finite() { ((s - low) / width).clamp(0.0, 1.0) as f32 } else { 0.0 };
+        let normalise = |s: f64| normalised(scalar, s) as f32;
         let at_points = scalar.location == Location::Point;
         let points = mesh
             .points()
@@ -44,6 +42,13 @@ impl DeviceMesh {
         let cells = mesh.cells().par_iter().map(|&cell| ascending(cell)).collect();
         DeviceMesh { scale, points, cells, cell_scalars, bounds: bounds.map(|corner| corner * scale) }
     }
+}
+
+/// A value of a field mapped from its range to [0, 1]; 0 if it is missing.
+pub(crate) fn normalised(scalar: &ScalarField, s: f64) -> f64 {
+    let [low, high] = scalar.range;
+    let width = if high > low { high - low } else { 1.0 };
+    if s.is_finite() { ((s - low) / width).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The power of two that brings a width into [1, 2).

@@ -1,8 +1,12 @@
 //! Direct volume rendering of tetrahedral meshes on wgpu and on the CPU.
 //!
-//! Both back ends project cells and composite, for every pixel, the exact integral along its ray through each cell:
-//! the CPU back end is the twin of the shaders. Which is used, and in which order cells are composited, the
-//! [`Plan`] says.
+//! Both back ends project cells and composite, for every pixel, the exact integral along its ray through each cell.
+//! Which is used, and in which order cells are composited, the [`Plan`] says.
+//!
+//! The CPU back end bins cells into tiles of pixels and draws vectors of pixels, with the best instruction set that the
+//! processor has: pictures are the same bit for bit every time and on any number of threads, and may differ by roundings
+//! between instruction sets. It leaves out what lies behind pixels whose transmittance is below a thousandth of the
+//! scene's `max_error`: a pixel changes by less than that share of it.
 //!
 //! ```
 //! use tetlux_mesh::{Field, TetMesh, procedural};
@@ -54,6 +58,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
 use tetlux_image::Image;
+use tetlux_mesh::ScalarField;
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::{OrderReport, Orderer};
 use tetlux_scene::{Backend, Classification, Device, Integrator, Plan, Scene, TablePrecision};
@@ -81,6 +86,7 @@ pub struct Frame {
 /// What a picture is made of.
 struct Job<'a> {
     mesh: &'a DeviceMesh,
+    scalar: &'a ScalarField,
     view: DeviceView,
     eye: EyeSpace,
     pieces: &'a [Piece],
@@ -175,6 +181,7 @@ impl Renderer {
         };
         let job = Job {
             mesh: &device_mesh,
+            scalar: &scene.scalar,
             view: DeviceView::new(view, mesh, &device_mesh),
             eye: EyeSpace::new(view, mesh, &device_mesh),
             pieces: &pieces,

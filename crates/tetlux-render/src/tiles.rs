@@ -53,7 +53,7 @@ fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> Vec<[f32; 4]> {
         middle: eye.middle.map(|m| m as f32),
         opaque: (1.0 - HIDDEN_ERROR * job.max_error / f64::from(brightest)) as f32,
     };
-    let points = stages.run("project", || record::points(job.mesh, eye));
+    let points = stages.run("project", || record::points(job.mesh, job.scalar, eye));
     let set_up = SetUp { mesh: job.mesh, points: &points, eye, pieces: job.pieces, size: job.size };
     let columns = bins::tiles(job.size)[0] as usize;
     let mut pixels = vec![[0.0; 4]; job.size[0] as usize * job.size[1] as usize];

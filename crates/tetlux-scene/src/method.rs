@@ -38,7 +38,7 @@ named! {
         Auto,
         /// wgpu.
         Gpu,
-        /// The same arithmetic on the processor's cores.
+        /// The processor's cores.
         Cpu,
     }
 }

@@ -13,9 +13,10 @@
 use fearless_simd::{Level, Select, Simd, SimdBase, dispatch};
 use glam::DVec3;
 use rayon::prelude::*;
+use tetlux_mesh::ScalarField;
 use tetlux_optics::transfer_f32::{Piece, piece_at};
 
-use crate::device_mesh::{DeviceMesh, NEGATIVE};
+use crate::device_mesh::{DeviceMesh, NEGATIVE, normalised};
 use crate::eye_space::EyeSpace;
 use crate::tiles::bins::TILE;
 use crate::tiles::vector::{Vector, dot};
@@ -27,7 +28,8 @@ pub(crate) struct Point {
     frame: DVec3,
     /// Pixel position; of use only in front of the near plane.
     pixel: [f32; 2],
-    scalar: f32,
+    /// Normalised; 0 for cell data.
+    scalar: f64,
 }
 
 /// A cell ready to be drawn. Pixels are counted from the box's first.
@@ -76,12 +78,13 @@ const NUDGE_SIDE: f64 = 128.0;
 const STEEPEST: f64 = 1e20;
 
 /// The mesh's vertices as seen.
-pub(crate) fn points(mesh: &DeviceMesh, eye: &EyeSpace) -> Vec<Point> {
-    let point = |&[x, y, z, scalar]: &[f32; 4]| {
+pub(crate) fn points(mesh: &DeviceMesh, scalar: &ScalarField, eye: &EyeSpace) -> Vec<Point> {
+    let point = |(i, &[x, y, z, _]): (usize, &[f32; 4])| {
         let frame = eye.frame(DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
+        let scalar = if mesh.cell_scalars.is_empty() { normalised(scalar, scalar.values[i]) } else { 0.0 };
         Point { frame, pixel: eye.pixel_of(frame + eye.offset).map(|p| p as f32), scalar }
     };
-    mesh.points.par_iter().map(point).collect()
+    mesh.points.par_iter().enumerate().map(point).collect()
 }
 
 /// What all cells of a picture have in common.
@@ -167,8 +170,7 @@ impl SetUp<'_> {
                 for axis in 0..3 {
                     frame[i][axis][lane] = points[i].frame[axis];
                 }
-                let scalar = self.mesh.cell_scalars.get(cells[lane] as usize).map_or(points[i].scalar, |&s| s);
-                scalars[i][lane] = f64::from(scalar) - f64::from(record.base);
+                scalars[i][lane] = points[i].scalar - f64::from(record.base);
             }
             for axis in 0..2 {
                 across[axis][lane] = f64::from(record.first[axis]) + 0.5 - self.eye.middle[axis];
@@ -327,7 +329,7 @@ impl SetUp<'_> {
     /// Sets the range of a cell's scalars and the pieces of the transfer function that it meets.
     #[inline(always)]
     fn classify(&self, cell: u32, points: [&Point; 4], record: &mut Record) {
-        let s = points.map(|p| p.scalar);
+        let s = points.map(|p| p.scalar as f32);
         let (least, most) = match self.mesh.cell_scalars.get(cell as usize) {
             Some(&s) => (s, s),
             None => (s[0].min(s[1]).min(s[2].min(s[3])), s[0].max(s[1]).max(s[2].max(s[3]))),

@@ -158,7 +158,7 @@ impl<'a, S: Simd> Walk<'a, S> {
         let columns = (1 << (right + 1)) - (1 << left);
         let below = u64::MAX << (COLUMNS * top);
         let above = u64::MAX >> (63 - (COLUMNS * bottom + COLUMNS - 1));
-        let boxed = (FIRST_COLUMN & below & above) * columns & self.alive;
+        let boxed = ((FIRST_COLUMN & below & above) * columns) & self.alive;
         if boxed.count_ones() <= FEW { boxed } else { self.silhouette(record, boxed) }
     }
 
@@ -184,7 +184,7 @@ impl<'a, S: Simd> Walk<'a, S> {
                 };
                 seen |= least.simd_gt(0.0).to_bitmask() << first;
             }
-            y = y + step;
+            y += step;
         }
         seen & boxed
     }
