@@ -127,14 +127,11 @@ fn every_combination_renders_or_is_refused_with_its_reason() {
 }
 
 /// One cell alone: its order cannot be wrong. Seen so that it is of class 1a, 1b, 2, and with a face edge-on.
-fn single_cells() -> Vec<(TetMesh, Scene)> {
+fn single_cells(opacity: &[[f64; 2]], color: &[[f64; 4]]) -> Vec<(TetMesh, Scene)> {
     let points = [[-1.0, -0.7, 0.1], [1.1, -0.6, -0.2], [0.1, 1.0, 0.0], [0.05, -0.1, 1.2]].map(DVec3::from);
     let parts = Parts { points: points.to_vec(), cells: vec![[0, 1, 2, 3]] };
     let mesh = mesh_with(&parts, Field::point("s", 1, vec![0.1, 0.9, 0.3, 0.7]));
-    let tf = transfer(
-        &[[0.0, 0.9, 0.1, 0.2], [0.4, 0.2, 0.8, 0.3], [1.0, 0.1, 0.3, 1.0]],
-        &[[0.0, 0.3], [0.35, 2.0], [0.5, 0.8], [0.9, 4.0]],
-    );
+    let tf = transfer(color, opacity);
     let middle = DVec3::new(0.05, 0.0, 0.3);
     let eyes = [[0.2, -0.1, 5.0], [0.1, 0.1, -4.0], [3.0, 3.5, 1.0], [-3.0, 0.4, 2.0], [4.0, -0.655, -2.0]];
     let cameras = eyes.iter().flat_map(|&eye| {
@@ -164,9 +161,12 @@ fn worst_error(mesh: &TetMesh, scene: &Scene, method: Method, cache: &TableCache
     (worst, excess)
 }
 
+const COLORS: [[f64; 4]; 3] = [[0.0, 0.9, 0.1, 0.2], [0.4, 0.2, 0.8, 0.3], [1.0, 0.1, 0.3, 1.0]];
+const OPACITIES: [[f64; 2]; 4] = [[0.0, 0.3], [0.35, 2.0], [0.5, 0.8], [0.9, 4.0]];
+
 #[test]
 fn exact_methods_agree_with_the_reference() {
-    let scenes = single_cells();
+    let scenes = single_cells(&OPACITIES, &COLORS);
     let cache = cache();
     // The error of q's table in each of a few pieces is 4.7e-5 of their alpha; elsewhere that of single precision.
     let tolerance = 1e-4;
@@ -185,6 +185,17 @@ fn exact_methods_agree_with_the_reference() {
             let (_, excess) = worst_error(mesh, scene, method, &cache);
             assert!(excess <= tolerance, "{projection} {:?}: {excess:.1e}", scene.camera);
         }
+    }
+    // Where the transfer function is linear, classification at the vertices loses nothing.
+    let linear = single_cells(&[[0.0, 0.3], [1.0, 4.0]], &[COLORS[0], COLORS[2]]);
+    for interpolation in [Interpolation::Ray, Interpolation::Perspective] {
+        let method = Method { classification: Classification::Vertex, interpolation, ..GPU };
+        for (mesh, scene) in &linear {
+            let (_, excess) = worst_error(mesh, scene, method, &cache);
+            assert!(excess <= tolerance, "vertex {interpolation} {:?}: {excess:.1e}", scene.camera);
+        }
+        let (mesh, scene) = &scenes[0];
+        assert!(worst_error(mesh, scene, method, &cache).1 > 10.0 * tolerance, "and much where it is not");
     }
     // Linear in the picture is another thing in perspective, and the same along parallel rays.
     let method = Method { interpolation: Interpolation::ScreenLinear, ..GPU };
@@ -210,10 +221,7 @@ fn pile() -> (TetMesh, Scene) {
     }
     let values = parts.points.iter().map(|_| random.between(0.0, 1.0)).collect();
     let mesh = mesh_with(&parts, Field::point("s", 1, values));
-    let tf = transfer(
-        &[[0.0, 0.9, 0.1, 0.2], [0.4, 0.2, 0.8, 0.3], [1.0, 0.1, 0.3, 1.0]],
-        &[[0.0, 0.3], [0.35, 2.0], [0.5, 0.8], [0.9, 4.0]],
-    );
+    let tf = transfer(&COLORS, &OPACITIES);
     let scene = scene(&mesh, tf, perspective(DVec3::new(0.1, -0.2, 6.0), DVec3::new(0.0, 0.0, 2.0), 40.0), [64, 64]);
     (mesh, scene)
 }
