@@ -6,27 +6,12 @@ import package::lib::cell::{Cell, Reference, HIDDEN, cell_reference};
 import package::lib::silhouette::{silhouette_corner};
 import package::lib::span::{Segment};
 import package::lib::ray::{cell_segment};
-import package::axes::quantity::{Linear, linear_in};
+import package::axes::quantity::{RayFragment, linear_in, linear_of, with_linear};
 import package::axes::shading::{pieces_between};
 
 @group(1) @binding(1) var<storage, read> projected: array<Cell>;
 
-struct Fragment {
-    @builtin(position) position: vec4<f32>,
-    @location(0) @interpolate(flat) plane_0: vec4<f32>,
-    @location(1) @interpolate(flat) plane_1: vec4<f32>,
-    @location(2) @interpolate(flat) plane_2: vec4<f32>,
-    @location(3) @interpolate(flat) plane_3: vec4<f32>,
-    @location(4) @interpolate(flat) linear_0: vec4<f32>,
-    @location(5) @interpolate(flat) linear_1: vec4<f32>,
-    @location(6) @interpolate(flat) linear_2: vec4<f32>,
-    @location(7) @interpolate(flat) linear_3: vec4<f32>,
-    @location(8) @interpolate(flat) origins: vec4<f32>,
-    // Range of w, and the depth of the reference vertex.
-    @location(9) @interpolate(flat) range_depth: vec3<f32>,
-    // The pieces of the transfer function that the cell's scalars meet, and the cell's place in the order.
-    @location(10) @interpolate(flat) pieces_entry: vec3<u32>,
-}
+alias Fragment = RayFragment;
 
 fn place(vertex_index: u32, instance_index: u32) -> Fragment {
     let i = vertex_index / 6u;
@@ -49,24 +34,19 @@ fn place(vertex_index: u32, instance_index: u32) -> Fragment {
     fragment.plane_1 = cell.planes[1];
     fragment.plane_2 = cell.planes[2];
     fragment.plane_3 = cell.planes[3];
-    fragment.linear_0 = linear[0];
-    fragment.linear_1 = linear[1];
-    fragment.linear_2 = linear[2];
-    fragment.linear_3 = linear[3];
     fragment.origins = reference.origins;
     fragment.range_depth = vec3<f32>(reference.w, reference.depth);
     let entry = entry_of(i);
     fragment.pieces_entry = vec3<u32>(pieces_between(reference.s.x, reference.s.y, entry), entry);
-    return fragment;
+    return with_linear(fragment, linear);
 }
 
 fn segment_in(fragment: Fragment) -> Segment {
     let at = fragment.position.xy - view.size * 0.5;
     let planes = array<vec4<f32>, 4>(fragment.plane_0, fragment.plane_1, fragment.plane_2, fragment.plane_3);
-    let linear = Linear(fragment.linear_0, fragment.linear_1, fragment.linear_2, fragment.linear_3);
     var reference: Reference;
     reference.origins = fragment.origins;
     reference.w = fragment.range_depth.xy;
     reference.depth = fragment.range_depth.z;
-    return cell_segment(planes, linear, reference, at);
+    return cell_segment(planes, linear_of(fragment), reference, at);
 }

@@ -6,7 +6,7 @@ import package::lib::cell::{Cell, HIDDEN, cell_reference};
 import package::lib::silhouette::{silhouette_corner};
 import package::lib::span::{Segment};
 import package::lib::ray::{cell_segment};
-import package::lib::thick::{THICK, inverse_depth};
+import package::lib::thick::{THICK, back_of, inverse_depth};
 import package::axes::quantity::{Quantity, quantity_of, unpacked, linear_in};
 import package::axes::interpolation::{carried, carried_ends, segment_between};
 import package::axes::shading::{pieces_between};
@@ -69,7 +69,7 @@ fn place(vertex_index: u32, instance_index: u32) -> Fragment {
     }
     fragment.position = at_pixel(at);
     fragment.front = carried(front, ends.x);
-    fragment.back = carried(back, ends.x - ends.y);
+    fragment.back = carried(back, back_of(ends));
     fragment.ends = carried_ends(ends, at);
     fragment.pieces_entry = vec3<u32>(vec2<u32>(cell.planes[3].zw), entry);
     return fragment;

@@ -2,7 +2,7 @@
 // linear in the picture; the front and the back end have each their own depth.
 import package::axes::quantity::{Quantity};
 import package::lib::span::{Segment};
-import package::lib::thick::{thickness};
+import package::lib::thick::{back_of, thickness};
 
 // What is interpolated of a value at a point of that inverse depth.
 fn carried(value: Quantity, inverse_depth: f32) -> Quantity {
@@ -15,5 +15,5 @@ fn carried_ends(ends: vec2<f32>, at: vec2<f32>) -> vec2<f32> {
 }
 
 fn segment_between(front: Quantity, back: Quantity, ends: vec2<f32>, at: vec2<f32>) -> Segment {
-    return Segment(front / ends.x, back / (ends.x - ends.y), thickness(ends, at));
+    return Segment(front / ends.x, back / back_of(ends), thickness(ends, at));
 }

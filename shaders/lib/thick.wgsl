@@ -31,7 +31,15 @@ fn thickness(ends: vec2<f32>, at: vec2<f32>) -> f32 {
     if ORTHOGRAPHIC {
         return ends.y;
     }
-    return length(vec3<f32>(at * view.pixel, 1.0)) * ends.y / (ends.x * (ends.x - ends.y));
+    return length(vec3<f32>(at * view.pixel, 1.0)) * ends.y / (ends.x * back_of(ends));
+}
+
+// The inverse depth of the back end; 1 in orthographic views.
+fn back_of(ends: vec2<f32>) -> f32 {
+    if ORTHOGRAPHIC {
+        return 1.0;
+    }
+    return ends.x - ends.y;
 }
 
 // The inverse depth of a vertex; 1 in orthographic views.

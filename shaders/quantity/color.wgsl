@@ -52,3 +52,34 @@ fn linear_at(linear: Linear, depth: f32, across: vec2<f32>, direction: vec3<f32>
     let along = linear[0] * direction.x + linear[1] * direction.y + linear[2] * direction.z;
     return max(linear[3] + depth * (aside - scaled * along), vec4<f32>(0.0));
 }
+
+// What geometry::ray hands to fragments: no more than this quantity needs, for every value costs time.
+struct RayFragment {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) plane_0: vec4<f32>,
+    @location(1) @interpolate(flat) plane_1: vec4<f32>,
+    @location(2) @interpolate(flat) plane_2: vec4<f32>,
+    @location(3) @interpolate(flat) plane_3: vec4<f32>,
+    @location(4) @interpolate(flat) origins: vec4<f32>,
+    // Range of w, and the depth of the reference vertex.
+    @location(5) @interpolate(flat) range_depth: vec3<f32>,
+    // The pieces of the transfer function that the cell's scalars meet, and the cell's place in the order.
+    @location(6) @interpolate(flat) pieces_entry: vec3<u32>,
+    @location(7) @interpolate(flat) linear_0: vec4<f32>,
+    @location(8) @interpolate(flat) linear_1: vec4<f32>,
+    @location(9) @interpolate(flat) linear_2: vec4<f32>,
+    @location(10) @interpolate(flat) linear_3: vec4<f32>,
+}
+
+fn with_linear(fragment: RayFragment, linear: Linear) -> RayFragment {
+    var result = fragment;
+    result.linear_0 = linear[0];
+    result.linear_1 = linear[1];
+    result.linear_2 = linear[2];
+    result.linear_3 = linear[3];
+    return result;
+}
+
+fn linear_of(fragment: RayFragment) -> Linear {
+    return Linear(fragment.linear_0, fragment.linear_1, fragment.linear_2, fragment.linear_3);
+}

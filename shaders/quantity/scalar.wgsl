@@ -36,3 +36,31 @@ fn linear_at(linear: Linear, depth: f32, across: vec2<f32>, direction: vec3<f32>
     let value = linear[0].w + depth * (dot(gradient.xy, across) - scaled * dot(gradient, direction));
     return clamp(value, linear[1].x, linear[1].y);
 }
+
+// What geometry::ray hands to fragments: no more than this quantity needs, for every value costs time.
+struct RayFragment {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) plane_0: vec4<f32>,
+    @location(1) @interpolate(flat) plane_1: vec4<f32>,
+    @location(2) @interpolate(flat) plane_2: vec4<f32>,
+    @location(3) @interpolate(flat) plane_3: vec4<f32>,
+    @location(4) @interpolate(flat) origins: vec4<f32>,
+    // Range of w, and the depth of the reference vertex.
+    @location(5) @interpolate(flat) range_depth: vec3<f32>,
+    // The pieces of the transfer function that the cell's scalars meet, and the cell's place in the order.
+    @location(6) @interpolate(flat) pieces_entry: vec3<u32>,
+    @location(7) @interpolate(flat) gradient_value: vec4<f32>,
+    @location(8) @interpolate(flat) range: vec2<f32>,
+}
+
+fn with_linear(fragment: RayFragment, linear: Linear) -> RayFragment {
+    var result = fragment;
+    result.gradient_value = linear[0];
+    result.range = linear[1].xy;
+    return result;
+}
+
+fn linear_of(fragment: RayFragment) -> Linear {
+    let none = vec4<f32>(0.0);
+    return Linear(fragment.gradient_value, vec4<f32>(fragment.range, 0.0, 0.0), none, none);
+}

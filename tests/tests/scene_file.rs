@@ -8,7 +8,10 @@ use std::path::Path;
 use glam::DVec3;
 use tetlux_mesh::procedural::{Split, cuboid};
 use tetlux_mesh::{Field, TetMesh};
-use tetlux_scene::{Backend, Integrator, Method, Order, Projection, SceneFile, UnitDistance};
+use tetlux_scene::{
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneFile,
+    TablePrecision, Target, UnitDistance,
+};
 
 const TRANSFER: &str = "[transfer]\ncolor = [[0.0, 1.0, 1.0, 1.0]]\nopacity = [[0.0, 1.0]]\n";
 
@@ -48,6 +51,8 @@ fn wrong_types_are_named_with_their_line() {
         ("[[camera]]\nview_up = \"z\"", 5),
         ("[method]\nbackend = \"cuda\"", 5),
         ("[method]\n\norder = \"nearest\"", 6),
+        ("[method]\nprojection = \"orthographic\"", 5),
+        ("[method]\ntable_precision = \"f64\"", 5),
         ("[method]\nmax_error = \"small\"", 5),
         ("not toml", 4),
         ("[image", 4),
@@ -101,6 +106,28 @@ fn impossible_transfer_functions_are_named_with_their_line() {
         assert_says(&error(&format!("[transfer]\n{text}\n")), &[&format!("a.toml:{line}:"), word]);
     }
     assert_says(&error("[image]\nsize = [10, 10]\n"), &["a.toml:", "transfer"]);
+}
+
+#[test]
+fn every_axis_of_the_method_is_a_key() {
+    let text = format!(
+        "{TRANSFER}[method]\nbackend = \"gpu\"\norder = \"centroid\"\nprojection = \"gator\"\n\
+         interpolation = \"screen-linear\"\nintegrator = \"preint-log\"\nclassification = \"post-exact\"\n\
+         table_precision = \"u16\"\ntarget = \"rgba8-dither\"\nmax_error = 0.5\n"
+    );
+    let method = SceneFile::parse("a.toml", &text).unwrap().method;
+    let expected = Method {
+        backend: Backend::Gpu,
+        order: Order::Centroid,
+        projection: CellProjection::Gator,
+        interpolation: Interpolation::ScreenLinear,
+        integrator: Integrator::PreintLog,
+        classification: Classification::PostExact,
+        table_precision: TablePrecision::U16,
+        target: Target::Rgba8Dither,
+        max_error: 0.5,
+    };
+    assert_eq!(method, expected);
 }
 
 #[test]

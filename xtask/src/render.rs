@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use tetlux_image::{Encoding, Image, write_exr, write_png};
 use tetlux_render::{Frame, Model, Renderer, Stages};
-use tetlux_scene::Plan;
+use tetlux_scene::{Backend, Plan};
 
 use crate::input::{Input, SceneArgs};
 use crate::report::{Report, create_folder};
@@ -17,6 +17,7 @@ Examples:
   cargo xtask render mesh.vtu --field pressure
   cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfin_tets.vtu
   cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfinxyz.bin --solution bluntfinq.bin --field Density
+  cargo xtask render --backend gpu --integrator psi --table-precision u16 --interpolation perspective
   cargo xtask render scene.toml --size 1600x900 --backend cpu --order pixel --output pictures/fin.png --json fin.json";
 
 #[derive(clap::Args)]
@@ -42,6 +43,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         Report::new(&input, plan, adapter.as_deref(), &[]).print_plan(plan);
     })?;
     let mut report = Report::new(&input, &plan, adapter.as_deref(), &frame.stages);
+    report.resources = (plan.backend == Backend::Gpu).then(|| frame.resources.into());
     report.print_stages();
     let png = args.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name).with_extension("png"));
     report.files = write_picture(&input, &frame.image, &png)?;

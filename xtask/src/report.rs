@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use tetlux_image::{Metrics, write_atomically};
-use tetlux_render::Stage;
+use tetlux_render::{Resources, Stage};
 use tetlux_scene::Plan;
 
 use crate::input::Input;
@@ -36,6 +36,8 @@ pub(crate) struct Report<'a> {
     warnings: &'a [String],
     stages: Vec<StageReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) resources: Option<ResourceReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) error: Option<Metrics>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) ordering_faults: Option<OrderingFaults>,
@@ -51,6 +53,23 @@ pub(crate) struct OrderingFaults {
     pub(crate) mended_by_sorting: u64,
     /// Largest error that is left after sorting.
     pub(crate) max_after_sorting: f64,
+}
+
+/// What the picture took of a graphics device.
+#[derive(Serialize, Clone, Copy)]
+pub(crate) struct ResourceReport {
+    pipelines: usize,
+    buffers: usize,
+    textures: usize,
+    bytes: u64,
+    cells_drawn: usize,
+}
+
+impl From<Resources> for ResourceReport {
+    fn from(resources: Resources) -> Self {
+        let Resources { pipelines, buffers, textures, bytes, cells } = resources;
+        ResourceReport { pipelines, buffers, textures, bytes, cells_drawn: cells }
+    }
 }
 
 #[derive(Serialize)]
@@ -88,6 +107,7 @@ impl<'a> Report<'a> {
                 .iter()
                 .map(|s| StageReport { name: s.name, wall_seconds: s.wall, cpu_seconds: s.cpu })
                 .collect(),
+            resources: None,
             error: None,
             ordering_faults: None,
             files: Vec::new(),
@@ -118,6 +138,12 @@ impl<'a> Report<'a> {
         }
         let cpu = self.stages.iter().map(|s| s.cpu_seconds).sum();
         row("total", self.stages.iter().map(|s| s.wall_seconds).sum(), cpu);
+        if let Some(ResourceReport { pipelines, buffers, textures, bytes, cells_drawn }) = self.resources {
+            say!(
+                "device: {pipelines} pipelines, {buffers} buffers, {textures} textures, {:.1} MiB; {cells_drawn} cells drawn",
+                bytes as f64 / f64::from(1 << 20)
+            );
+        }
     }
 
     pub(crate) fn write(&self, path: &Path) -> Result<()> {

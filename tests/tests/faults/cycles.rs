@@ -8,7 +8,9 @@ use tetlux_tests::{
     Way, largest_error, mesh_of, orthographic, perspective, plan_by, reference, render, renderer, scene, transfer,
 };
 
-use crate::TOLERANCE;
+/// Extinctions of up to 6 over lengths of up to 2, sixty times what the other pictures' tolerance is for; single precision
+/// leaves 1e-7 of each depth on the device.
+const TOLERANCE: f64 = 5e-5;
 
 /// Three cells, each in front of the next.
 fn three() -> Parts {
@@ -86,7 +88,8 @@ fn three_disjoint_cells_by_centroid_are_wrong() {
     let camera = perspective(DVec3::splat(12.0), DVec3::splat(0.4), 16.0);
     let scene = scene(&mesh, transfer(&colors, &[[0.0, 5.0]]), camera, [64, 56]);
     let error = largest_error(render(&mesh, &scene, Way::CpuCentroid).pixels(), &reference(&mesh, &scene));
-    assert!(error > 0.01, "no order of the cells is right: {error:.1e}");
+    // The budget of a scene that says nothing.
+    assert!(error > 1e-3, "no order of the cells is right: {error:.1e}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use tetlux_tables::Table;
 use wgpu::util::DeviceExt;
 
 /// A device and its queue, one a process.
@@ -14,14 +15,23 @@ fn device() -> &'static (wgpu::Device, wgpu::Queue) {
             panic!("there is no graphics adapter: these tests need a driver (a software one will do)")
         };
         println!("on {}", adapter.get_info().name);
-        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).unwrap()
+        let descriptor = wgpu::DeviceDescriptor { required_limits: adapter.limits(), ..Default::default() };
+        pollster::block_on(adapter.request_device(&descriptor)).unwrap()
     })
 }
 
-/// Runs `source` on rows of numbers: it sees `var<storage, read> inputs: array<u32>` (group 1, binding 0) and writes
-/// `var<storage, read_write> outputs: array<u32>` (group 1, binding 1), `width` a row; entry point `main`, workgroups
-/// of 64 rows. `storage` is bound to group 0, binding 1, unless it is empty.
-pub(crate) fn run(source: &str, storage: &[u8], inputs: &[f32], rows: usize, width: usize) -> Vec<f32> {
+/// What a shader sees besides its rows: a group, a binding, and what is bound there.
+pub(crate) enum Bound<'a> {
+    Uniform(u32, u32, &'a [u8]),
+    Storage(u32, u32, &'a [u8]),
+    /// In single precision.
+    Texture(u32, u32, &'a Table),
+}
+
+/// Runs `source` on rows of numbers: it sees `var<storage, read> inputs: array<u32>` (group 3, binding 0) and writes
+/// `var<storage, read_write> outputs: array<u32>` (group 3, binding 1), `width` a row; entry point `main`, workgroups
+/// of 64 rows.
+pub(crate) fn run(source: &str, bound: &[Bound], inputs: &[f32], rows: usize, width: usize) -> Vec<f32> {
     let (device, queue) = device();
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
@@ -35,8 +45,7 @@ pub(crate) fn run(source: &str, storage: &[u8], inputs: &[f32], rows: usize, wid
         compilation_options: Default::default(),
         cache: None,
     });
-    let buffer = |contents: &[u8]| {
-        let usage = wgpu::BufferUsages::STORAGE;
+    let buffer = |contents: &[u8], usage| {
         device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
     };
     let size = (rows * width * 4) as u64;
@@ -44,22 +53,39 @@ pub(crate) fn run(source: &str, storage: &[u8], inputs: &[f32], rows: usize, wid
         |usage| device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
     let output = make(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let readback = make(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let input = buffer(bytemuck::cast_slice(inputs));
-    let scene = buffer(if storage.is_empty() { &[0; 16] } else { storage });
-    fn entry(binding: u32, b: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
-        wgpu::BindGroupEntry { binding, resource: b.as_entire_binding() }
+    let input = buffer(bytemuck::cast_slice(inputs), wgpu::BufferUsages::STORAGE);
+    enum Made {
+        Buffer(wgpu::Buffer),
+        View(wgpu::TextureView),
     }
-    let group = |index, entries: &[wgpu::BindGroupEntry]| {
-        let layout = &pipeline.get_bind_group_layout(index);
-        device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
-    };
+    let mut made: Vec<(u32, u32, Made)> = bound
+        .iter()
+        .map(|bound| match *bound {
+            Bound::Uniform(g, b, bytes) => (g, b, Made::Buffer(buffer(bytes, wgpu::BufferUsages::UNIFORM))),
+            Bound::Storage(g, b, bytes) => (g, b, Made::Buffer(buffer(bytes, wgpu::BufferUsages::STORAGE))),
+            Bound::Texture(g, b, table) => (g, b, Made::View(texture(device, queue, table))),
+        })
+        .collect();
+    made.push((3, 0, Made::Buffer(input)));
+    made.push((3, 1, Made::Buffer(output.clone())));
     let mut encoder = device.create_command_encoder(&Default::default());
     let mut pass = encoder.begin_compute_pass(&Default::default());
     pass.set_pipeline(&pipeline);
-    if !storage.is_empty() {
-        pass.set_bind_group(0, &group(0, &[entry(1, &scene)]), &[]);
+    for group in 0..4 {
+        let of_group = made.iter().filter(|(g, ..)| *g == group);
+        let entries: Vec<_> = of_group
+            .map(|(_, binding, made)| wgpu::BindGroupEntry {
+                binding: *binding,
+                resource: match made {
+                    Made::Buffer(buffer) => buffer.as_entire_binding(),
+                    Made::View(view) => wgpu::BindingResource::TextureView(view),
+                },
+            })
+            .collect();
+        let layout = &pipeline.get_bind_group_layout(group);
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
+        pass.set_bind_group(group, &device.create_bind_group(&descriptor), &[]);
     }
-    pass.set_bind_group(1, &group(1, &[entry(0, &input), entry(1, &output)]), &[]);
     pass.dispatch_workgroups(rows.div_ceil(64) as u32, 1, 1);
     drop(pass);
     encoder.copy_buffer_to_buffer(&output, 0, &readback, 0, size);
@@ -68,4 +94,26 @@ pub(crate) fn run(source: &str, storage: &[u8], inputs: &[f32], rows: usize, wid
     device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     let bytes = readback.get_mapped_range(..).unwrap();
     bytemuck::pod_collect_to_vec(&bytes)
+}
+
+/// A table of one channel, or of more stored as four.
+fn texture(device: &wgpu::Device, queue: &wgpu::Queue, table: &Table) -> wgpu::TextureView {
+    let given = table.spec().channels().len();
+    let channels = if given == 1 { 1 } else { 4 };
+    let padded = |texel: &[f32]| -> Vec<f32> { (0..channels).map(|c| texel.get(c).copied().unwrap_or(0.0)).collect() };
+    let texels: Vec<f32> = table.texels().chunks_exact(given).flat_map(padded).collect();
+    let [width, height, depth] = table.spec().size;
+    let descriptor = wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: depth },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: if table.axes().len() == 2 { wgpu::TextureDimension::D2 } else { wgpu::TextureDimension::D3 },
+        format: if channels == 1 { wgpu::TextureFormat::R32Float } else { wgpu::TextureFormat::Rgba32Float },
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    };
+    let order = wgpu::util::TextureDataOrder::LayerMajor;
+    let texture = device.create_texture_with_data(queue, &descriptor, order, bytemuck::cast_slice(&texels));
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

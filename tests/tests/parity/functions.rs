@@ -7,7 +7,7 @@ use tetlux_optics::transfer_f32::{self, Piece, Weights};
 use tetlux_shaders::{DEFAULTS, compose};
 use tetlux_tests::{Random, transfer};
 
-use crate::device::run;
+use crate::device::{Bound, run};
 
 /// What a driver's exp leaves: 2 units of the last place near 0, 62 at -80, where the result is 1e-35; Vulkan allows
 /// 3 + 2 |x|. Divisions may be off by 2.5 units, and multiplications and additions may be fused.
@@ -20,13 +20,13 @@ const RELATIVE: f32 = 1e-5;
 const SMALLEST: f32 = 1e-37;
 
 /// Whether a shader's result is its twin's, and finite.
-fn agree(shader: f32, twin: f32) -> bool {
+pub(crate) fn agree(shader: f32, twin: f32) -> bool {
     let error = (shader - twin).abs();
     shader.is_finite() && error <= ABSOLUTE && (error <= RELATIVE * twin.abs() || error <= SMALLEST)
 }
 
 /// Every kind of number that bits can make, and log-uniform positive ones.
-fn any_number(random: &mut Random) -> f32 {
+pub(crate) fn any_number(random: &mut Random) -> f32 {
     const SPECIAL: [f32; 18] = [
         0.0,
         -0.0,
@@ -59,8 +59,8 @@ fn any_number(random: &mut Random) -> f32 {
 const ROWS: usize = 1_000_000;
 
 const SEGMENT_TEST: &str = "
-@group(1) @binding(0) var<storage, read> inputs: array<u32>;
-@group(1) @binding(1) var<storage, read_write> outputs: array<u32>;
+@group(3) @binding(0) var<storage, read> inputs: array<u32>;
+@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -117,9 +117,9 @@ fn segment_weights() {
 }
 
 /// Three numbers of two: `FUNCTION` stands for the function's name.
-const THREE_TEST: &str = "
-@group(1) @binding(0) var<storage, read> inputs: array<u32>;
-@group(1) @binding(1) var<storage, read_write> outputs: array<u32>;
+pub(crate) const THREE_TEST: &str = "
+@group(3) @binding(0) var<storage, read> inputs: array<u32>;
+@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -176,8 +176,8 @@ fn published_weights_are_finite_and_alike_where_they_are_stable() {
 }
 
 const INTEGRATE_TEST: &str = "
-@group(1) @binding(0) var<storage, read> inputs: array<u32>;
-@group(1) @binding(1) var<storage, read_write> outputs: array<u32>;
+@group(3) @binding(0) var<storage, read> inputs: array<u32>;
+@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -195,12 +195,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 ";
 
-fn bytes(pieces: &[Piece]) -> Vec<u8> {
+pub(crate) fn bytes(pieces: &[Piece]) -> Vec<u8> {
     pieces.iter().flat_map(|p| [p.low, p.high, p.s].concat()).flat_map(f32::to_ne_bytes).collect()
 }
 
 /// Up to 12 control points with steps and peaks; every piece linear.
-fn random_pieces(random: &mut Random) -> Vec<Piece> {
+pub(crate) fn random_pieces(random: &mut Random) -> Vec<Piece> {
     let mut places: Vec<f64> = (0..2 + random.below(11)).map(|_| random.between(-0.2, 1.2)).collect();
     places.sort_by(f64::total_cmp);
     let mut opacity: Vec<[f64; 2]> = Vec::new();
@@ -244,7 +244,7 @@ fn whole_segments() {
                 [first, last, front, back, length]
             })
             .collect();
-        let outputs = run(&source, &bytes(&pieces), &inputs, rows, 4);
+        let outputs = run(&source, &[Bound::Storage(0, 1, &bytes(&pieces))], &inputs, rows, 4);
         for (row, found) in inputs.chunks_exact(5).zip(outputs.chunks_exact(4)) {
             let range = [row[0], row[1]].map(|k| k.to_bits() as usize);
             let twin = transfer_f32::integrate(&pieces, range, Weights::Direct, row[2], row[3], row[4]);

@@ -4,4 +4,7 @@
 
 mod device;
 mod functions;
+mod lookups;
+mod methods;
 mod pictures;
+mod thick;

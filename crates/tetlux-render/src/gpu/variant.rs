@@ -178,3 +178,87 @@ impl Variant {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+    use tetlux_scene::Method;
+
+    use super::*;
+
+    /// Every variant that a method which is not refused can have.
+    fn variants() -> Vec<Variant> {
+        let mut variants = Vec::new();
+        for &projection in CellProjection::ALL {
+            for &interpolation in Interpolation::ALL {
+                for &integrator in Integrator::ALL {
+                    for &classification in Classification::ALL {
+                        let method =
+                            Method { projection, interpolation, integrator, classification, ..Method::default() };
+                        let decided = projection != CellProjection::Auto
+                            && interpolation != Interpolation::Auto
+                            && integrator != Integrator::Auto
+                            && classification != Classification::Auto;
+                        if decided && method.refusal().is_none() {
+                            let target = Target::ALL[variants.len() % Target::ALL.len()];
+                            let [orthographic, cell_data] = [1, 2].map(|bit| variants.len() & bit != 0);
+                            variants.push(Variant {
+                                group: false,
+                                orthographic,
+                                cell_data,
+                                projection,
+                                interpolation,
+                                integrator,
+                                classification,
+                                target,
+                            });
+                        }
+                    }
+                }
+            }
+        }
+        variants
+    }
+
+    /// The module as naga has it; it names the resources that are there, used or not.
+    fn validated(name: &str, variant: &Variant) -> naga::Module {
+        let source = tetlux_shaders::compose(name, &variant.choices()).unwrap_or_else(|e| panic!("{variant:?}: {e}"));
+        let module = naga::front::wgsl::parse_str(&source)
+            .unwrap_or_else(|e| panic!("{name} of {variant:?}: {}", e.emit_to_string(&source)));
+        Validator::new(ValidationFlags::all(), Capabilities::empty())
+            .validate(&module)
+            .unwrap_or_else(|e| panic!("{name} of {variant:?}: {}", e.emit_to_string(&source)));
+        module
+    }
+
+    #[test]
+    fn every_variant_composes_and_binds_what_its_shaders_name() {
+        let variants = variants();
+        assert!(variants.len() > 100);
+        // Pieces of cells are never in groups.
+        let whole = variants.iter().filter(|v| v.classification != Classification::PostClip);
+        let of_groups: Vec<Variant> = whole.map(|v| v.of_groups()).collect();
+        for variant in variants.iter().chain(&of_groups) {
+            let stages = [variant.stage()].into_iter().chain(variant.geometry().compute);
+            let mut named: Vec<(u32, u32)> = stages
+                .flat_map(|stage| {
+                    let module = validated(stage, variant);
+                    let bindings = module.global_variables.iter().filter_map(|(_, v)| v.binding);
+                    bindings.map(|b| (b.group, b.binding)).collect::<Vec<_>>()
+                })
+                .collect();
+            named.sort_unstable();
+            named.dedup();
+            let mut bound: Vec<(u32, u32)> = variant.bindings().into_iter().map(|b| (0, b as u32)).collect();
+            bound.push((1, 0));
+            bound.extend(variant.geometry().compute.map(|_| (1, 1)));
+            let tables = variant.tables();
+            if !tables.is_empty() {
+                bound.push((2, 0));
+                bound
+                    .extend(tables.iter().map(|&axes| (2, if axes == wgpu::TextureViewDimension::D2 { 1 } else { 2 })));
+            }
+            assert_eq!(named, bound, "{variant:?}");
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! Every method by name: each combination renders or is refused with its reason, exact ones agree with the reference, and
+//! none takes what it does not use.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::DVec3;
+use tetlux_mesh::procedural::{Parts, Split, cuboid};
+use tetlux_mesh::{Field, TetMesh};
+use tetlux_render::{Frame, Resources, table_specs};
+use tetlux_scene::{
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Plan, Scene, TablePrecision,
+    Target,
+};
+use tetlux_tables::{Table, TableCache};
+use tetlux_tests::{
+    Random, mesh_of, mesh_with, orthographic, perspective, pixel_error, reference, reference_beside, renderer, scene,
+    transfer,
+};
+
+fn all<T: Copy + PartialEq + Default>(values: &[T]) -> Vec<T> {
+    // `Auto` is one of the others.
+    values.iter().copied().filter(|v| *v != T::default()).collect()
+}
+
+const GPU: Method = Method {
+    backend: Backend::Gpu,
+    order: Order::Centroid,
+    projection: CellProjection::Pt,
+    interpolation: Interpolation::Ray,
+    integrator: Integrator::Direct,
+    classification: Classification::PostExact,
+    table_precision: TablePrecision::Auto,
+    target: Target::Rgba32f,
+    max_error: 1e-3,
+};
+
+fn planned(mesh: &TetMesh, scene: &Scene, method: Method) -> Plan {
+    let scene = Scene { method, ..scene.clone() };
+    Plan::new(&scene, mesh, renderer().device()).unwrap_or_else(|e| panic!("{method:?}: {e}"))
+}
+
+fn frame(mesh: &TetMesh, scene: &Scene, method: Method, cache: &TableCache) -> Frame {
+    let plan = planned(mesh, scene, method);
+    let tables: Vec<Arc<Table>> =
+        table_specs(scene, mesh, &plan).iter().map(|spec| cache.get_or_build(spec).unwrap()).collect();
+    renderer().render_with(scene, mesh, &plan, &tables).unwrap_or_else(|e| panic!("{method:?}: {e}"))
+}
+
+fn cache() -> TableCache {
+    TableCache::new(1 << 28)
+}
+
+/// A small block of cells in colour.
+fn block() -> (TetMesh, Scene) {
+    let parts = cuboid([3, 2, 2], Split::Six, [-DVec3::ONE, DVec3::ONE]);
+    let mesh = mesh_of(&parts, |p| (2.0 * p.x).sin() + p.y * p.z);
+    let tf = transfer(
+        &[[-1.0, 0.9, 0.1, 0.2], [0.0, 0.2, 0.8, 0.3], [1.5, 1.0, 0.9, 0.2]],
+        &[[-1.0, 1.0], [-0.5, 0.1], [0.2, 0.5], [0.9, 2.0]],
+    );
+    let scene = scene(&mesh, tf, perspective(DVec3::new(2.5, -3.0, 1.8), DVec3::ZERO, 45.0), [64, 64]);
+    (mesh, scene)
+}
+
+/// Every combination of how segments are found and integrated.
+fn geometries_and_integrals() -> Vec<Method> {
+    let mut methods = Vec::new();
+    for projection in all(CellProjection::ALL) {
+        for interpolation in all(Interpolation::ALL) {
+            for integrator in all(Integrator::ALL) {
+                for classification in all(Classification::ALL) {
+                    methods.push(Method { projection, interpolation, integrator, classification, ..GPU });
+                }
+            }
+        }
+    }
+    methods
+}
+
+/// Whether a combination is drawn here. Pipelines take a software driver long: of the two geometries that differ from
+/// others in a function only, one pre-integrated and one integrator in every classification stand for all. That all
+/// compose is a test of the renderer.
+fn is_drawn(method: &Method) -> bool {
+    let few = method.projection == CellProjection::Gator || method.interpolation == Interpolation::ScreenLinear;
+    !few || matches!(method.integrator, Integrator::Direct | Integrator::Preint)
+}
+
+#[test]
+fn every_combination_renders_or_is_refused_with_its_reason() {
+    let start = Instant::now();
+    let (mesh, scene) = block();
+    let cache = cache();
+    let mut methods = geometries_and_integrals();
+    methods.extend(all(Target::ALL).into_iter().map(|target| Method { target, ..GPU }));
+    for table_precision in all(TablePrecision::ALL) {
+        methods.extend(all(Integrator::ALL).into_iter().map(|integrator| Method {
+            table_precision,
+            integrator,
+            ..GPU
+        }));
+    }
+    let exact = frame(&mesh, &scene, GPU, &cache).image;
+    let (mut rendered, mut refused) = (0, 0);
+    for method in methods {
+        if let Some(reason) = method.refusal() {
+            assert!(reason.len() > 30 && reason.contains('"'), "{reason}");
+            let scene = Scene { method, ..scene.clone() };
+            assert!(Plan::new(&scene, &mesh, renderer().device()).is_err(), "{method:?}");
+            refused += 1;
+            continue;
+        }
+        if !is_drawn(&method) {
+            continue;
+        }
+        let image = frame(&mesh, &scene, method, &cache).image;
+        assert!(image.pixels().iter().flatten().all(|v| v.is_finite()), "{method:?}");
+        // Whatever its error, alpha is that of this scene: mean of covered pixels. The published form is not stable.
+        let mean = |image: &tetlux_image::Image| image.pixels().iter().map(|p| p[3]).sum::<f32>();
+        let ratio = mean(&image) / mean(&exact);
+        let low_alpha = method.classification == Classification::Vertex;
+        assert!((ratio - 1.0).abs() < if low_alpha { 0.5 } else { 0.05 }, "{method:?}: alpha is {ratio} of what it is");
+        rendered += 1;
+    }
+    println!("{rendered} rendered, {refused} refused, in {:.1} s", start.elapsed().as_secs_f64());
+    assert!(rendered > 70 && refused > 20);
+}
+
+/// One cell alone: its order cannot be wrong. Seen so that it is of class 1a, 1b, 2, and with a face edge-on.
+fn single_cells(opacity: &[[f64; 2]], color: &[[f64; 4]]) -> Vec<(TetMesh, Scene)> {
+    let points = [[-1.0, -0.7, 0.1], [1.1, -0.6, -0.2], [0.1, 1.0, 0.0], [0.05, -0.1, 1.2]].map(DVec3::from);
+    let parts = Parts { points: points.to_vec(), cells: vec![[0, 1, 2, 3]] };
+    let mesh = mesh_with(&parts, Field::point("s", 1, vec![0.1, 0.9, 0.3, 0.7]));
+    let tf = transfer(color, opacity);
+    let middle = DVec3::new(0.05, 0.0, 0.3);
+    let eyes = [[0.2, -0.1, 5.0], [0.1, 0.1, -4.0], [3.0, 3.5, 1.0], [-3.0, 0.4, 2.0], [4.0, -0.655, -2.0]];
+    let cameras = eyes.iter().flat_map(|&eye| {
+        let eye = DVec3::from(eye);
+        [perspective(eye, middle, 32.0), orthographic(eye, middle, 1.4)]
+    });
+    cameras.map(|camera| (mesh.clone(), scene(&mesh, tf.clone(), camera, [64, 64]))).collect()
+}
+
+/// The largest error over what is not the silhouette's. Where published methods interpolate, a vertex may lie 1/256 pixel
+/// beside its place: so much of the picture's slope is theirs.
+fn worst_error(mesh: &TetMesh, scene: &Scene, method: Method, cache: &TableCache) -> (f64, f64) {
+    let image = frame(mesh, scene, method, cache).image;
+    let truth = reference(mesh, scene);
+    let beside = [[0.01, 0.0], [-0.01, 0.0], [0.0, 0.01], [0.0, -0.01]].map(|by| reference_beside(mesh, scene, by));
+    let (mut worst, mut excess) = (0.0f64, 0.0f64);
+    for (i, (&pixel, &truth)) in image.pixels().iter().zip(&truth).enumerate() {
+        let slope = beside.iter().flat_map(|b| (0..4).map(|c| (b[i][c] - truth[c]).abs()).collect::<Vec<_>>());
+        let slope = slope.fold(0.0, f64::max);
+        let silhouette = beside.iter().any(|b| (b[i][3] == 0.0) != (truth[3] == 0.0));
+        if !silhouette {
+            let error = pixel_error(pixel, truth);
+            worst = worst.max(error);
+            excess = excess.max(error - slope);
+        }
+    }
+    (worst, excess)
+}
+
+const COLORS: [[f64; 4]; 3] = [[0.0, 0.9, 0.1, 0.2], [0.4, 0.2, 0.8, 0.3], [1.0, 0.1, 0.3, 1.0]];
+const OPACITIES: [[f64; 2]; 4] = [[0.0, 0.3], [0.35, 2.0], [0.5, 0.8], [0.9, 4.0]];
+
+#[test]
+fn exact_methods_agree_with_the_reference() {
+    let scenes = single_cells(&OPACITIES, &COLORS);
+    let cache = cache();
+    // The error of q's table in each of a few pieces is 4.7e-5 of their alpha; elsewhere that of single precision.
+    let tolerance = 1e-4;
+    for integrator in [Integrator::Direct, Integrator::Symmetric, Integrator::Q] {
+        for classification in [Classification::PostExact, Classification::PostClip] {
+            let method = Method { integrator, classification, ..GPU };
+            for (mesh, scene) in &scenes {
+                let (worst, _) = worst_error(mesh, scene, method, &cache);
+                assert!(worst <= tolerance, "{integrator} {classification} {:?}: {worst:.1e}", scene.camera);
+            }
+        }
+    }
+    for projection in [CellProjection::Pt, CellProjection::Gator] {
+        let method = Method { projection, interpolation: Interpolation::Perspective, ..GPU };
+        for (mesh, scene) in &scenes {
+            let (_, excess) = worst_error(mesh, scene, method, &cache);
+            assert!(excess <= tolerance, "{projection} {:?}: {excess:.1e}", scene.camera);
+        }
+    }
+    // Where the transfer function is linear, classification at the vertices loses nothing.
+    let linear = single_cells(&[[0.0, 0.3], [1.0, 4.0]], &[COLORS[0], COLORS[2]]);
+    for interpolation in [Interpolation::Ray, Interpolation::Perspective] {
+        let method = Method { classification: Classification::Vertex, interpolation, ..GPU };
+        for (mesh, scene) in &linear {
+            let (_, excess) = worst_error(mesh, scene, method, &cache);
+            assert!(excess <= tolerance, "vertex {interpolation} {:?}: {excess:.1e}", scene.camera);
+        }
+        let (mesh, scene) = &scenes[0];
+        assert!(worst_error(mesh, scene, method, &cache).1 > 10.0 * tolerance, "and much where it is not");
+    }
+    // Linear in the picture is another thing in perspective, and the same along parallel rays.
+    let method = Method { interpolation: Interpolation::ScreenLinear, ..GPU };
+    let errors: Vec<f64> = scenes.iter().map(|(mesh, scene)| worst_error(mesh, scene, method, &cache).1).collect();
+    assert!(errors.iter().step_by(2).all(|&e| e > 10.0 * tolerance), "perspective: {errors:?}");
+    assert!(errors.iter().skip(1).step_by(2).all(|&e| e <= tolerance), "orthographic: {errors:?}");
+}
+
+/// Cells one behind the other, seen along the pile: the order of their centroids is right.
+fn pile() -> (TetMesh, Scene) {
+    let mut random = Random::new(41);
+    let mut parts = Parts { points: Vec::new(), cells: Vec::new() };
+    for layer in 0..12u32 {
+        let depth = |share: f64| DVec3::Z * (0.3 * (f64::from(layer) + share));
+        let turn = f64::from(layer);
+        let corner = |angle: f64| DVec3::new((turn + angle).cos(), (turn + angle).sin(), 0.0);
+        let random_depth = |random: &mut Random| depth(random.between(0.0, 0.3));
+        for angle in [0.0, 2.0, 4.0] {
+            parts.points.push(corner(angle) + random_depth(&mut random));
+        }
+        parts.points.push(DVec3::new(random.between(-0.2, 0.2), random.between(-0.2, 0.2), 0.0) + depth(0.9));
+        parts.cells.push([0, 1, 2, 3].map(|k| 4 * layer + k));
+    }
+    let values = parts.points.iter().map(|_| random.between(0.0, 1.0)).collect();
+    let mesh = mesh_with(&parts, Field::point("s", 1, values));
+    let tf = transfer(&COLORS, &OPACITIES);
+    let scene = scene(&mesh, tf, perspective(DVec3::new(0.1, -0.2, 6.0), DVec3::new(0.0, 0.0, 2.0), 40.0), [64, 64]);
+    (mesh, scene)
+}
+
+#[test]
+fn errors_by_method() {
+    let (mesh, scene) = pile();
+    let cache = cache();
+    let truth = reference(&mesh, &scene);
+    let error = |method: Method| {
+        let image = frame(&mesh, &scene, method, &cache).image;
+        image.pixels().iter().zip(&truth).map(|(&p, &t)| pixel_error(p, t)).fold(0.0, f64::max)
+    };
+    println!("largest error of a pixel, {} cells, 64 x 64, centroid order:", mesh.cells().len());
+    let exact = error(GPU);
+    for integrator in all(Integrator::ALL) {
+        println!("  {integrator:14} {:.1e}", error(Method { integrator, ..GPU }));
+    }
+    for interpolation in all(Interpolation::ALL) {
+        println!("  {interpolation:14} {:.1e}", error(Method { interpolation, ..GPU }));
+    }
+    for classification in all(Classification::ALL) {
+        println!("  {classification:14} {:.1e}", error(Method { classification, ..GPU }));
+    }
+    for target in all(Target::ALL) {
+        println!("  {target:14} {:.1e}", error(Method { target, ..GPU }));
+    }
+    for table_precision in all(TablePrecision::ALL) {
+        println!(
+            "  psi in {table_precision:7} {:.1e}",
+            error(Method { integrator: Integrator::Psi, table_precision, ..GPU })
+        );
+    }
+    // What each artifact costs at least, against what is exact.
+    assert!(exact < 1e-4, "{exact:.1e}");
+    for worse in [
+        Method { integrator: Integrator::Average, ..GPU },
+        Method { classification: Classification::Vertex, ..GPU },
+        Method { interpolation: Interpolation::ScreenLinear, ..GPU },
+        Method { target: Target::Rgba8, ..GPU },
+        Method { integrator: Integrator::PreintLog, ..GPU },
+        Method { integrator: Integrator::Psi, table_precision: TablePrecision::U8, ..GPU },
+    ] {
+        assert!(error(worse) > 10.0 * exact, "{worse:?}");
+    }
+}
+
+#[test]
+fn cells_around_the_eye_are_drawn_by_every_geometry() {
+    let (mesh, scene) = block();
+    let inside = perspective(DVec3::new(0.2, 0.1, -0.3), DVec3::X, 90.0);
+    let parallel = orthographic(DVec3::new(0.2, 0.1, -0.3), DVec3::X, 1.2);
+    let cache = cache();
+    for camera in [inside, parallel] {
+        let scene = Scene { camera, ..scene.clone() };
+        let exact = frame(&mesh, &scene, GPU, &cache).image;
+        assert!(exact.pixels().iter().filter(|p| p[3] > 0.1).count() > 64 * 64 / 2, "the mesh is all around");
+        for projection in [CellProjection::Pt, CellProjection::Gator] {
+            let method = Method { projection, interpolation: Interpolation::Perspective, ..GPU };
+            let image = frame(&mesh, &scene, method, &cache).image;
+            let differences = image
+                .pixels()
+                .iter()
+                .zip(exact.pixels())
+                .map(|(a, b)| (0..4).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max));
+            // Vertices rounded to 1/256 pixel, close to the eye: a few pixels on edges.
+            let off = differences.filter(|&d| d > 2e-3).count();
+            assert!(off < 64 * 64 / 50, "{projection}: {off} pixels differ");
+        }
+    }
+}
+
+#[test]
+fn a_method_takes_what_it_uses_and_nothing_else() {
+    let (mesh, scene) = block();
+    let cache = cache();
+    let taken = |method: Method| frame(&mesh, &scene, method, &cache).resources;
+    let (cells, points) = (mesh.cells().len() as u64, mesh.points().len() as u64);
+    // View, pieces, points, cells, order, batch, projected cells, readback.
+    // Between six control points, below and above.
+    let pieces = 7;
+    let default = Resources {
+        pipelines: 2,
+        buffers: 8,
+        textures: 1,
+        bytes: 96 + pieces * 48 + points * 16 + cells * (16 + 4 + 80) + 16 + 2 * 64 * 64 * 16,
+        cells: cells as usize,
+    };
+    let plain = taken(GPU);
+    assert_eq!(plain, default, "no table, no texture but the picture");
+    let gator = taken(Method { projection: CellProjection::Gator, interpolation: Interpolation::Perspective, ..GPU });
+    assert_eq!(gator, Resources { pipelines: 1, buffers: 7, bytes: plain.bytes - cells * 80, ..plain });
+    let q = taken(Method { integrator: Integrator::Q, ..GPU });
+    assert_eq!(q, Resources { buffers: 9, textures: 2, bytes: plain.bytes + 80 + 128 * 128 * 4, ..plain });
+    let bytes = Method { integrator: Integrator::Q, table_precision: TablePrecision::U8, ..GPU };
+    assert_eq!(taken(bytes).bytes, plain.bytes + 80 + 128 * 128);
+    let preint = taken(Method { integrator: Integrator::Preint, ..GPU });
+    // A table in place of the transfer function.
+    assert_eq!((preint.buffers, preint.textures), (8, 2));
+    let ratio = taken(Method { integrator: Integrator::PreintQ, ..GPU });
+    assert_eq!((ratio.buffers, ratio.textures), (8, 3));
+    let halves = taken(Method { target: Target::Rgba16f, ..GPU });
+    assert_eq!(halves.bytes, plain.bytes - 64 * 64 * 8 * 2);
+    let clipped = taken(Method { classification: Classification::PostClip, ..GPU });
+    assert!(clipped.buffers == 9 && clipped.cells > plain.cells, "{clipped:?}");
+    // Scalars of cells are a buffer only where there are any.
+    let by_cell = mesh_with(
+        &cuboid([3, 2, 2], Split::Six, [-DVec3::ONE, DVec3::ONE]),
+        Field::cell("s", 1, (0..cells).map(|c| c as f64).collect()),
+    );
+    let scene = tetlux_tests::scene(&by_cell, scene.transfer.clone(), scene.camera, [64, 64]);
+    assert_eq!(frame(&by_cell, &scene, GPU, &cache).resources.buffers, 9);
+}
+
+#[test]
+fn a_table_that_is_not_given_is_asked_for_by_name() {
+    let (mesh, scene) = block();
+    let plan = planned(&mesh, &scene, Method { integrator: Integrator::Q, ..GPU });
+    let error = renderer().render(&scene, &mesh, &plan).unwrap_err().to_string();
+    assert!(error.contains("\"q\"") && error.contains("table_specs"), "{error}");
+}
