@@ -66,19 +66,26 @@ fn sheets(mesh: &TetMesh, faces: &[[u32; 3]]) -> Option<u32> {
             is_summit[lower as usize] = false;
         }
     }
-    let across = GENERIC.any_orthonormal_vector();
-    let along = GENERIC.cross(across);
+    // Each summit with the two other corners of a face round it.
+    let mut corners: Vec<[u32; 3]> = faces
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]])
+        .filter(|corner| is_summit[corner[0] as usize])
+        .collect();
+    corners.sort_unstable();
     let mut turned = 0.0;
-    for face in faces {
-        for i in 0..3 {
-            let [summit, b, c] = [face[i], face[(i + 1) % 3], face[(i + 2) % 3]];
-            if is_summit[summit as usize] {
-                let [b, c] = [b, c].map(|v| {
-                    let edge = at(v) - at(summit);
-                    [edge.dot(across), edge.dot(along)]
-                });
-                turned += (b[0] * c[1] - b[1] * c[0]).atan2(b[0] * c[0] + b[1] * c[1]);
-            }
+    for round in corners.chunk_by(|a, b| a[0] == b[0]) {
+        let edge = |summit: u32, v: u32| (at(v) - at(summit)).normalize_or_zero();
+        // Within the cone that the faces make, which need not hold what is straight below the summit.
+        let axis = round.iter().map(|&[s, b, c]| edge(s, b) + edge(s, c)).sum::<DVec3>().normalize_or_zero();
+        if axis == DVec3::ZERO {
+            return None;
+        }
+        let across = axis.any_orthonormal_vector();
+        let along = across.cross(axis);
+        for &[s, b, c] in round {
+            let [b, c] = [b, c].map(|v| [edge(s, v).dot(across), edge(s, v).dot(along)]);
+            turned += (b[0] * c[1] - b[1] * c[0]).atan2(b[0] * c[0] + b[1] * c[1]);
         }
     }
     let sheets = turned / TAU;
