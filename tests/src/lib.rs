@@ -144,13 +144,8 @@ pub fn renderer() -> &'static Renderer {
 
 /// The plan of a scene for a way of rendering.
 pub fn plan(mesh: &TetMesh, scene: &Scene, way: Way) -> Plan {
-    plan_by(mesh, scene, way.method())
-}
-
-/// The plan of a scene for a method.
-pub fn plan_by(mesh: &TetMesh, scene: &Scene, method: Method) -> Plan {
-    let scene = Scene { method, ..scene.clone() };
-    Plan::new(&scene, mesh, renderer().device()).unwrap_or_else(|e| panic!("{method:?} cannot be planned: {e}"))
+    let scene = Scene { method: way.method(), ..scene.clone() };
+    Plan::new(&scene, mesh, renderer().device()).unwrap_or_else(|e| panic!("{way:?} cannot be planned: {e}"))
 }
 
 /// The picture.

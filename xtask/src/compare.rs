@@ -158,7 +158,9 @@ fn ordering_faults(
     reference: &Image,
 ) -> Result<(OrderingFaults, Image)> {
     let sorted_plan = Plan { backend: Backend::Cpu, order: Order::Pixel, ..plan.clone() };
-    let sorted = progress::during("sorting every pixel", || renderer.render(&input.scene, &Model::new(&input.mesh), &sorted_plan))?;
+    let sorted = progress::during("sorting every pixel", || {
+        renderer.render(&input.scene, &Model::new(&input.mesh), &sorted_plan)
+    })?;
     let budget = input.scene.method.max_error;
     let error =
         |a: &[f32; 4], b: &[f32; 4]| (0..4).map(|i| (f64::from(a[i]) - f64::from(b[i])).abs()).fold(0.0, f64::max);

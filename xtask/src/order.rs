@@ -100,7 +100,12 @@ pub(crate) fn run(args: &Args) -> Result<bool> {
         let rays: Vec<Ray> = spread(view.size, args.rays).map(|[i, j]| ray(&sampling, i, j)).collect();
         let pairs = if args.all_pairs { Pairs::All } else { Pairs::Adjacent };
         let found = verifier.verify_all(&orders, &rays, pairs);
-        let errors = along.errors(&orders, &rays);
+        // Where an order inverts nothing, it changes no colour.
+        let mut inverted: Vec<usize> = found.iter().flat_map(|found| found.inverted.iter().copied()).collect();
+        inverted.sort_unstable();
+        inverted.dedup();
+        let inverted: Vec<Ray> = inverted.into_iter().map(|ray| rays[ray]).collect();
+        let errors = along.errors(&orders, &inverted);
         for (report, ((order, found), error)) in reports.iter_mut().zip(orders.iter().zip(&found).zip(&errors)) {
             report.add(order, found, error);
         }

@@ -1,11 +1,13 @@
 //! Meshes made by rule: hexahedral grids of any shape, split into tetrahedra.
 
+mod cycles;
 pub(crate) mod random;
 mod vortices;
 mod wing;
 
 use glam::DVec3;
 
+pub use cycles::{filled_ring, ring, three_cycle};
 pub use vortices::Vortices;
 pub use wing::{WING_FIELD, Wing, wing};
 

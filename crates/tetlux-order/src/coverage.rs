@@ -115,8 +115,6 @@ struct Edge {
     y: f64,
     /// Where the value is above this in magnitude, its sign is certain.
     bound: f64,
-    /// Column, from the middle, at which the value is zero in the middle row, its growth a row, and its error.
-    root: [f64; 3],
 }
 
 /// Roundings of an edge's value, in units of 2^-53 and of the product of the vectors' lengths: differences 2, products
@@ -128,18 +126,25 @@ impl Edge {
         let (from_eye, along) = (a.as_dvec3() - rays.eye, b.as_dvec3() - a.as_dvec3());
         let half = rays.size.map(|n| f64::from(n) * 0.5 * rays.pixel);
         let reach = half[0] + half[1];
+        // Sums of components are no less than lengths.
+        let [distance, length] = [from_eye, along].map(|v| v.abs().element_sum());
         let (middle, x, y, size) = if rays.parallel {
             let n = along.cross(rays.forward);
-            (n.dot(from_eye), -n.dot(rays.right), -n.dot(rays.down), along.length() * (from_eye.length() + reach))
+            (n.dot(from_eye), -n.dot(rays.right), -n.dot(rays.down), length * (distance + reach))
         } else {
             let n = from_eye.cross(along);
-            let size = along.length() * from_eye.length() * (1.0 + reach);
+            let size = length * distance * (1.0 + reach);
             (n.dot(rays.forward), n.dot(rays.right), n.dot(rays.down), size)
         };
-        let (x, y, bound) = (x * rays.pixel, y * rays.pixel, EDGE_ERROR * size);
-        let (root, growth) = (-middle / x, -y / x);
-        let error = 1e-6 + 2.0 * bound / x.abs() + 1e-12 * (root.abs() + growth.abs() * f64::from(rays.size[1]));
-        Edge { a, b, middle, x, y, bound, root: [root, growth, error] }
+        Edge { a, b, middle, x: x * rays.pixel, y: y * rays.pixel, bound: EDGE_ERROR * size }
+    }
+
+    /// Column, from the middle, at which the value is zero in the middle row; its growth a row; and its error.
+    fn root(&self, rays: &Rays) -> [f64; 3] {
+        let inverse = 1.0 / self.x;
+        let (root, growth) = (-self.middle * inverse, -self.y * inverse);
+        let rounding = 1e-12 * (root.abs() + growth.abs() * f64::from(rays.size[1]));
+        [root, growth, 1e-6 + 2.0 * self.bound * inverse.abs() + rounding]
     }
 
     /// At pixels from the middle of the picture.
@@ -179,9 +184,8 @@ impl Edge {
     }
 
     /// Shrinks a range of a row's columns to those that may be inside.
-    fn shrink(&self, columns: &mut Range<u32>, first: f64, y: f64) {
+    fn shrink(&self, [root, growth, error]: [f64; 3], columns: &mut Range<u32>, first: f64, y: f64) {
         // From the first column's centre; casts saturate, so that the range only shrinks within itself.
-        let [root, growth, error] = self.root;
         let root = root + growth * y - first;
         if self.x > 0.0 {
             columns.start = columns.start.max((root - error) as u32);
@@ -211,6 +215,7 @@ impl Triangle {
     pub(crate) fn cover(&self, rays: &Rays, pixels: Pixels, mut cover: impl FnMut(u32, Range<u32>)) {
         let [first_x, first_y] = [0, 1].map(|axis| rays.center_offset(axis, 0.0));
         let wide = pixels.columns.len() > WIDE;
+        let roots = if wide { self.edges.map(|edge| edge.root(rays)) } else { [[0.0; 3]; 3] };
         for row in pixels.rows {
             let y = f64::from(row) + first_y;
             let holds = |column| {
@@ -219,7 +224,9 @@ impl Triangle {
             };
             let mut columns = pixels.columns.clone();
             if wide {
-                self.edges.iter().for_each(|edge| edge.shrink(&mut columns, first_x, y));
+                for (edge, root) in self.edges.iter().zip(roots) {
+                    edge.shrink(root, &mut columns, first_x, y);
+                }
             }
             if !wide || self.edges.iter().any(|edge| edge.is_level(rays, &columns, row)) {
                 columns.filter(|&column| holds(column)).for_each(|column| cover(row, column..column + 1));

@@ -27,9 +27,20 @@ const SIMPLE: u8 = 1;
 struct Crossing {
     depth: f64,
     cell: u32,
-    /// In the band.
+    /// Its number in the band.
     pixel: u32,
     entry: bool,
+}
+
+/// A face of the boundary as the rays meet it.
+#[derive(Debug, Clone)]
+struct Face {
+    cell: u32,
+    /// Rays enter the mesh through it; else they leave.
+    entry: bool,
+    /// Counter-clockwise seen from where rays go.
+    corners: [Vec3; 3],
+    pixels: Pixels,
 }
 
 /// What the picture's rays tell, and memory kept for the next view.
@@ -39,10 +50,11 @@ pub(crate) struct Gaps {
     pub(crate) arrows: Vec<u64>,
     pub(crate) overlap_pixels: usize,
     pub(crate) overlap_cells: usize,
-    bounds: Vec<Option<Pixels>>,
-    /// Where each band's faces start in `faces`.
+    /// The faces of the boundary that rays may meet; nothing for the others.
+    faces: Vec<Option<Face>>,
+    /// Where each band's faces start in `listed`.
     starts: Vec<usize>,
-    faces: Vec<u32>,
+    listed: Vec<u32>,
     bands: Vec<Band>,
     overlapping: Vec<u32>,
 }
@@ -54,20 +66,19 @@ struct Band {
     counts: Vec<u8>,
     /// Tiles with a pixel of more than [`SIMPLE`] of them.
     tiles: Vec<bool>,
+    /// The number, from 0, of every such pixel; of no meaning for others.
+    numbers: Vec<u32>,
     crossings: Vec<Crossing>,
-    /// Where each pixel's crossings end in `sorted`.
-    ends: Vec<usize>,
+    /// Where the crossings of each such pixel end in `sorted`.
+    ends: Vec<u32>,
     sorted: Vec<Crossing>,
     findings: Findings,
 }
 
 /// What all bands share.
 struct View<'a> {
-    mesh: &'a TetMesh,
-    facts: &'a Facts,
-    codes: &'a [u8],
     rays: &'a Rays,
-    bounds: &'a [Option<Pixels>],
+    faces: &'a [Option<Face>],
     /// The eye is in or on a cell: rays leave before they enter.
     inside: bool,
     tolerance: f64,
@@ -76,36 +87,21 @@ struct View<'a> {
 impl Gaps {
     /// Finds the arrows; `codes` are those of the faces, `inside` says whether the eye is in or on a cell.
     pub(crate) fn find(&mut self, mesh: &TetMesh, facts: &Facts, codes: &[u8], rays: &Rays, inside: bool) {
-        let boundary = facts.interior..facts.owners.len();
-        boundary
-            .clone()
+        (facts.interior..facts.owners.len())
             .into_par_iter()
             .with_min_len(256)
-            .map(|face| {
-                let seen = is_entry(codes[face]) || is_exit(codes[face]);
-                let bounds = seen.then(|| rays.bounds(corners(mesh, facts, face).1))?;
-                (!bounds.rows.is_empty() && !bounds.columns.is_empty()).then_some(bounds)
-            })
-            .collect_into_vec(&mut self.bounds);
-        self.fill_bands(rays, boundary.start);
+            .map(|face| Face::new(mesh, facts, rays, face, codes[face]))
+            .collect_into_vec(&mut self.faces);
+        self.list_faces(rays);
 
         let [width, height] = rays.size();
-        let view = View {
-            mesh,
-            facts,
-            codes,
-            rays,
-            bounds: &self.bounds,
-            inside,
-            tolerance: tolerance(facts, rays),
-        };
-        let (starts, faces) = (&self.starts, &self.faces);
-        let count = height.div_ceil(BAND) as usize;
-        self.bands.resize_with(count, Band::default);
+        let view = View { rays, faces: &self.faces, inside, tolerance: tolerance(facts, rays) };
+        let (starts, listed) = (&self.starts, &self.listed);
+        self.bands.resize_with(height.div_ceil(BAND) as usize, Band::default);
         self.bands.par_iter_mut().enumerate().for_each(|(band, memory)| {
             let top = band as u32 * BAND;
             let area = Pixels { columns: 0..width, rows: top..(top + BAND).min(height) };
-            memory.find(&view, &faces[starts[band]..starts[band + 1]], &area);
+            memory.find(&view, &listed[starts[band]..starts[band + 1]], &area);
         });
 
         self.arrows.clear();
@@ -124,25 +120,26 @@ impl Gaps {
     }
 
     /// Lists the faces of every band: a counting sort.
-    fn fill_bands(&mut self, rays: &Rays, first: usize) {
+    fn list_faces(&mut self, rays: &Rays) {
         let bands = rays.size()[1].div_ceil(BAND) as usize;
-        let spans = |bounds: &Option<Pixels>| {
-            bounds.as_ref().map_or(0..0, |p| (p.rows.start / BAND) as usize..p.rows.end.div_ceil(BAND) as usize)
+        let spans = |face: &Option<Face>| {
+            let rows = face.as_ref().map_or(0..0, |face| face.pixels.rows.clone());
+            (rows.start / BAND) as usize..rows.end.div_ceil(BAND) as usize
         };
         self.starts.clear();
         self.starts.resize(bands + 2, 0);
-        for band in self.bounds.iter().flat_map(spans) {
+        for band in self.faces.iter().flat_map(spans) {
             self.starts[band + 2] += 1;
         }
         for band in 0..bands {
             self.starts[band + 2] += self.starts[band + 1];
         }
-        self.faces.clear();
-        self.faces.resize(self.starts[bands + 1], 0);
-        for (i, bounds) in self.bounds.iter().enumerate() {
-            for band in spans(bounds) {
+        self.listed.clear();
+        self.listed.resize(self.starts[bands + 1], 0);
+        for (i, face) in self.faces.iter().enumerate() {
+            for band in spans(face) {
                 let place = &mut self.starts[band + 1];
-                self.faces[*place] = (first + i) as u32;
+                self.listed[*place] = i as u32;
                 *place += 1;
             }
         }
@@ -159,91 +156,99 @@ fn tolerance(facts: &Facts, rays: &Rays) -> f64 {
     share * reach + 1e-12 * (reach + rays.eye_distance())
 }
 
-/// The owner of a face, and its corners counter-clockwise seen from outside.
-fn corners(mesh: &TetMesh, facts: &Facts, face: usize) -> (u32, [Vec3; 3]) {
-    let (cell, vertices) = facts.vertices(mesh, face);
-    (cell, vertices.map(|v| mesh.points()[v as usize]))
-}
-
-impl View<'_> {
-    /// The pixels of a face within `area`.
-    fn pixels(&self, face: u32, area: &Pixels) -> Option<Pixels> {
-        let bounds = self.bounds[face as usize - self.facts.interior].as_ref()?;
-        let rows = bounds.rows.start.max(area.rows.start)..bounds.rows.end.min(area.rows.end);
-        Some(Pixels { columns: bounds.columns.clone(), rows })
+impl Face {
+    fn new(mesh: &TetMesh, facts: &Facts, rays: &Rays, face: usize, code: u8) -> Option<Face> {
+        let entry = is_entry(code);
+        if !entry && !is_exit(code) {
+            return None;
+        }
+        let (cell, vertices) = facts.vertices(mesh, face);
+        let [a, b, c] = vertices.map(|v| mesh.points()[v as usize]);
+        let pixels = rays.bounds([a, b, c]);
+        let met = !pixels.rows.is_empty() && !pixels.columns.is_empty();
+        met.then_some(Face { cell, entry, corners: if entry { [a, c, b] } else { [a, b, c] }, pixels })
     }
 
-    /// A face as the rays that enter or leave through it see it.
-    fn triangle(&self, [a, b, c]: [Vec3; 3], entry: bool) -> Triangle {
-        Triangle::new(self.rays, if entry { [a, c, b] } else { [a, b, c] })
+    fn pixels_in(&self, area: &Pixels) -> Pixels {
+        let rows = self.pixels.rows.start.max(area.rows.start)..self.pixels.rows.end.min(area.rows.end);
+        Pixels { columns: self.pixels.columns.clone(), rows }
     }
 }
 
 impl Band {
-    fn find(&mut self, view: &View, faces: &[u32], area: &Pixels) {
+    fn find(&mut self, view: &View, listed: &[u32], area: &Pixels) {
         self.findings.clear();
-        if !self.count(view, faces, area) {
+        let faces = listed.iter().filter_map(|&face| view.faces[face as usize].as_ref());
+        self.count(view, faces.clone(), area);
+        let pixels = self.mark(area.columns.len());
+        if pixels == 0 {
             return;
         }
         self.cross(view, faces, area);
-        self.sort(area);
+        self.sort(pixels);
         let mut start = 0;
         for &end in &self.ends {
-            walk(&mut self.sorted[start..end], view.tolerance, &mut self.findings);
-            start = end;
+            walk(&mut self.sorted[start..end as usize], view.tolerance, &mut self.findings);
+            start = end as usize;
         }
     }
 
-    /// Counts every pixel's entries, exits too if there may be more of them, and marks the tiles to be looked at; false
-    /// if there are none.
-    fn count(&mut self, view: &View, faces: &[u32], area: &Pixels) -> bool {
+    /// Counts every pixel's entries, exits too if there may be more of them.
+    fn count<'a>(&mut self, view: &View, faces: impl Iterator<Item = &'a Face>, area: &Pixels) {
         let width = area.columns.len();
         self.counts.clear();
         self.counts.resize(width * area.rows.len(), 0);
-        for &face in faces {
-            let entry = is_entry(view.codes[face as usize]);
-            if !entry && !view.inside {
-                continue;
-            }
-            let Some(pixels) = view.pixels(face, area) else { continue };
-            let (_, corners) = corners(view.mesh, view.facts, face as usize);
-            view.triangle(corners, entry).cover(view.rays, pixels, |row, columns| {
+        for face in faces.filter(|face| face.entry || view.inside) {
+            Triangle::new(view.rays, face.corners).cover(view.rays, face.pixels_in(area), |row, columns| {
                 let start = (row - area.rows.start) as usize * width;
                 for count in &mut self.counts[start + columns.start as usize..start + columns.end as usize] {
                     *count = count.saturating_add(1);
                 }
             });
         }
+    }
+
+    /// Marks the tiles to be looked at, and numbers their pixels of more than [`SIMPLE`] crossings; gives their number.
+    fn mark(&mut self, width: usize) -> u32 {
+        let mut pixels = 0;
         self.tiles.clear();
         self.tiles.resize(width.div_ceil(BAND as usize), false);
-        for row in self.counts.chunks(width) {
-            for (tile, counts) in self.tiles.iter_mut().zip(row.chunks(BAND as usize)) {
-                *tile |= counts.iter().any(|&count| count > SIMPLE);
+        self.numbers.resize(self.counts.len(), 0);
+        for (counts, numbers) in self.counts.chunks(width).zip(self.numbers.chunks_mut(width)) {
+            let tiles = counts.chunks(BAND as usize).zip(numbers.chunks_mut(BAND as usize));
+            for (marked, (counts, numbers)) in self.tiles.iter_mut().zip(tiles) {
+                if counts.iter().fold(0, |most, &count| count.max(most)) <= SIMPLE {
+                    continue;
+                }
+                *marked = true;
+                for (&count, number) in counts.iter().zip(numbers) {
+                    *number = pixels;
+                    pixels += u32::from(count > SIMPLE);
+                }
             }
         }
-        self.tiles.contains(&true)
+        pixels
     }
 
     /// Lists the crossings of the pixels to be looked at.
-    fn cross(&mut self, view: &View, faces: &[u32], area: &Pixels) {
+    fn cross<'a>(&mut self, view: &View, faces: impl Iterator<Item = &'a Face>, area: &Pixels) {
         let width = area.columns.len();
         self.crossings.clear();
-        for &face in faces {
-            let Some(pixels) = view.pixels(face, area) else { continue };
-            let tiles = (pixels.columns.start / BAND) as usize..pixels.columns.end.div_ceil(BAND) as usize;
+        for face in faces {
+            let columns = &face.pixels.columns;
+            let tiles = (columns.start / BAND) as usize..columns.end.div_ceil(BAND) as usize;
             if !self.tiles[tiles].contains(&true) {
                 continue;
             }
-            let entry = is_entry(view.codes[face as usize]);
-            let (cell, corners) = corners(view.mesh, view.facts, face as usize);
-            let depth = Depth::new(view.rays, corners);
-            view.triangle(corners, entry).cover(view.rays, pixels, |row, columns| {
+            let depth = Depth::new(view.rays, face.corners);
+            Triangle::new(view.rays, face.corners).cover(view.rays, face.pixels_in(area), |row, columns| {
                 let start = (row - area.rows.start) as usize * width;
                 for column in columns {
                     let pixel = start + column as usize;
                     if self.counts[pixel] > SIMPLE {
                         let depth = depth.at(view.rays, column, row);
-                        self.crossings.push(Crossing { depth, cell, pixel: pixel as u32, entry });
+                        let pixel = self.numbers[pixel];
+                        self.crossings.push(Crossing { depth, cell: face.cell, pixel, entry: face.entry });
                     }
                 }
             });
@@ -251,9 +256,9 @@ impl Band {
     }
 
     /// Sorts the crossings by pixel, and each pixel's by depth.
-    fn sort(&mut self, area: &Pixels) {
+    fn sort(&mut self, pixels: u32) {
         self.ends.clear();
-        self.ends.resize(area.columns.len() * area.rows.len() + 1, 0);
+        self.ends.resize(pixels as usize + 1, 0);
         for crossing in &self.crossings {
             self.ends[crossing.pixel as usize + 1] += 1;
         }
@@ -263,18 +268,18 @@ impl Band {
         // Starts become ends as the places fill.
         self.ends.pop();
         let nothing = Crossing { depth: 0.0, cell: 0, pixel: 0, entry: false };
-        self.sorted.clear();
         self.sorted.resize(self.crossings.len(), nothing);
         for crossing in &self.crossings {
             let place = &mut self.ends[crossing.pixel as usize];
-            self.sorted[*place] = *crossing;
+            self.sorted[*place as usize] = *crossing;
             *place += 1;
         }
         let mut start = 0;
         for &end in &self.ends {
             let key = |c: &Crossing| (c.cell, c.entry);
-            self.sorted[start..end].sort_unstable_by(|a, b| a.depth.total_cmp(&b.depth).then(key(a).cmp(&key(b))));
-            start = end;
+            self.sorted[start..end as usize]
+                .sort_unstable_by(|a, b| a.depth.total_cmp(&b.depth).then(key(a).cmp(&key(b))));
+            start = end as usize;
         }
     }
 }

@@ -85,12 +85,13 @@ mod tests {
     #[test]
     fn groups_follow_the_cells_that_are_kept() {
         let order = Order { cells: vec![7, 3, 5, 1, 0, 2, 4, 6], groups: vec![1..3, 4..8], ..Order::default() };
+        let ends = |order: &Order| order.groups.iter().map(|g| (g.start, g.end)).collect::<Vec<_>>();
         let odd = order.filter(|cell| cell % 2 == 1);
         assert_eq!(odd.cells, [7, 3, 5, 1]);
-        assert_eq!(odd.groups, [1..3]);
+        assert_eq!(ends(&odd), [(1, 3)]);
         let some = order.filter(|cell| [7, 3, 2, 6].contains(&cell));
         assert_eq!(some.cells, [7, 3, 2, 6]);
-        assert_eq!(some.groups, [2..4]);
+        assert_eq!(ends(&some), [(2, 4)]);
         assert_eq!(order.filter(|_| true), order);
         assert_eq!(order.filter(|_| false).groups, vec![]);
     }

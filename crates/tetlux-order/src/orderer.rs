@@ -173,3 +173,6 @@ fn ascending(x: f32) -> u32 {
     let bits = x.to_bits();
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
+
+#[cfg(test)]
+mod tests;

@@ -19,8 +19,11 @@ pub fn table_specs(scene: &Scene, mesh: &TetMesh, plan: &Plan) -> Vec<TableSpec>
         let range = if low < high { [low, high] } else { [low, low + low.abs().max(1.0)] };
         TransferSpec::new(transfer, range, scene.unit_distance, largest_thickness(mesh, &plan.cells))
     };
-    let pre_integrated =
-        |thickness| TableKind::PreIntegrated { transfer: transfer_spec(), thickness, construction: Construction::Exact };
+    let pre_integrated = |thickness| TableKind::PreIntegrated {
+        transfer: transfer_spec(),
+        thickness,
+        construction: Construction::Exact,
+    };
     match plan.integrator {
         Integrator::Psi => vec![TableSpec::default_psi()],
         Integrator::Q => vec![TableSpec::default_q()],

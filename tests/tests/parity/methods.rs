@@ -7,7 +7,7 @@ use std::time::Instant;
 use glam::DVec3;
 use tetlux_mesh::procedural::{Parts, Split, cuboid};
 use tetlux_mesh::{Field, TetMesh};
-use tetlux_render::{Frame, Resources, table_specs};
+use tetlux_render::{Frame, Model, Resources, table_specs};
 use tetlux_scene::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Plan, Scene, TablePrecision,
     Target,
@@ -15,7 +15,7 @@ use tetlux_scene::{
 use tetlux_tables::{Table, TableCache};
 use tetlux_tests::{
     Random, mesh_of, mesh_with, orthographic, perspective, pixel_error, reference, reference_beside, renderer, scene,
-    transfer,
+    transfer, transfer_of,
 };
 
 fn all<T: Copy + PartialEq + Default>(values: &[T]) -> Vec<T> {
@@ -44,7 +44,7 @@ fn frame(mesh: &TetMesh, scene: &Scene, method: Method, cache: &TableCache) -> F
     let plan = planned(mesh, scene, method);
     let tables: Vec<Arc<Table>> =
         table_specs(scene, mesh, &plan).iter().map(|spec| cache.get_or_build(spec).unwrap()).collect();
-    renderer().render_with(scene, mesh, &plan, &tables).unwrap_or_else(|e| panic!("{method:?}: {e}"))
+    renderer().render_with(scene, &Model::new(mesh), &plan, &tables).unwrap_or_else(|e| panic!("{method:?}: {e}"))
 }
 
 fn cache() -> TableCache {
@@ -332,7 +332,7 @@ fn a_method_takes_what_it_uses_and_nothing_else() {
         &cuboid([3, 2, 2], Split::Six, [-DVec3::ONE, DVec3::ONE]),
         Field::cell("s", 1, (0..cells).map(|c| c as f64).collect()),
     );
-    let scene = tetlux_tests::scene(&by_cell, scene.transfer.clone(), scene.camera, [64, 64]);
+    let scene = tetlux_tests::scene(&by_cell, transfer_of(&scene).clone(), scene.camera, [64, 64]);
     assert_eq!(frame(&by_cell, &scene, GPU, &cache).resources.buffers, 9);
 }
 
@@ -340,6 +340,6 @@ fn a_method_takes_what_it_uses_and_nothing_else() {
 fn a_table_that_is_not_given_is_asked_for_by_name() {
     let (mesh, scene) = block();
     let plan = planned(&mesh, &scene, Method { integrator: Integrator::Q, ..GPU });
-    let error = renderer().render(&scene, &mesh, &plan).unwrap_err().to_string();
+    let error = renderer().render(&scene, &Model::new(&mesh), &plan).unwrap_err().to_string();
     assert!(error.contains("\"q\"") && error.contains("table_specs"), "{error}");
 }

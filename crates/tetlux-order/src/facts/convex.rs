@@ -8,21 +8,18 @@ use tetlux_mesh::TetMesh;
 use super::Facts;
 use crate::exact::{Viewpoint, plane_sign};
 
-/// A direction that no mesh of rule or reason is aligned with.
-const GENERIC: DVec3 = DVec3::new(0.348_771_096_2, -0.620_194_772_1, 0.702_641_348_9);
-
-/// Certifies that the boundary is a closed surface, nowhere concave, that turns about the mesh once.
+/// Certifies that the boundary is a closed surface without a concave edge, of the topology of a sphere, that winds about
+/// none of its vertices more than once.
 ///
-/// A closed surface without a concave edge has the same number of sheets in every direction of its normals (it is
-/// immersed but for vertices, where sheets may wind several times); counting them at the summits in one direction
-/// tells a single convex body from several, or from one wound about itself. Cells of positive volume then fill it
-/// once.
+/// Such a surface bounds a convex body: without a concave edge, it turns to every direction equally often, which is
+/// once if its Euler characteristic is 2 and no vertex is a branch point (Riemann and Hurwitz). Cells of positive
+/// volume then fill the body once.
 pub(super) fn is_convex(mesh: &TetMesh, facts: &Facts) -> bool {
     if facts.known.folded_faces > 0 || facts.known.non_manifold_faces > 0 {
         return false;
     }
     let faces: Vec<[u32; 3]> = (facts.interior..facts.owners.len()).map(|face| facts.vertices(mesh, face).1).collect();
-    has_no_concave_edge(mesh, &faces) && sheets(mesh, &faces) == Some(1)
+    has_no_concave_edge(mesh, &faces) && is_simple_sphere(mesh, &faces)
 }
 
 /// Every edge of the surface joins two faces, neither of which has the other's third vertex before it.
@@ -53,35 +50,61 @@ fn has_no_concave_edge(mesh: &TetMesh, faces: &[[u32; 3]]) -> bool {
     })
 }
 
-/// How often the surface turns about the summits in one direction; `None` where rounding leaves it open.
-fn sheets(mesh: &TetMesh, faces: &[[u32; 3]]) -> Option<u32> {
+/// Euler's characteristic is 2, and every vertex has its faces round it once.
+fn is_simple_sphere(mesh: &TetMesh, faces: &[[u32; 3]]) -> bool {
     let at = |v: u32| mesh.points()[v as usize].as_dvec3();
-    let height = |v: u32| (GENERIC.dot(at(v)), v);
-    // Vertices of the surface that no neighbour on it overtops.
-    let mut is_summit = vec![false; mesh.points().len()];
-    faces.iter().flatten().for_each(|&v| is_summit[v as usize] = true);
-    for &[a, b, c] in faces {
-        for (a, b) in [(a, b), (b, c), (c, a)] {
-            let lower = if height(a) < height(b) { a } else { b };
-            is_summit[lower as usize] = false;
-        }
-    }
-    let across = GENERIC.any_orthonormal_vector();
-    let along = GENERIC.cross(across);
-    let mut turned = 0.0;
+    let normal = |&[a, b, c]: &[u32; 3]| (at(b) - at(a)).cross(at(c) - at(a)).normalize_or_zero();
+    let turns = |face: &[u32; 3]| [0, 1, 2].map(|i| [face[i], face[(i + 1) % 3], face[(i + 2) % 3]]);
+
+    let mut vertices = vec![Vertex::NEW; mesh.points().len()];
     for face in faces {
-        for i in 0..3 {
-            let [summit, b, c] = [face[i], face[(i + 1) % 3], face[(i + 2) % 3]];
-            if is_summit[summit as usize] {
-                let [b, c] = [b, c].map(|v| {
-                    let edge = at(v) - at(summit);
-                    [edge.dot(across), edge.dot(along)]
-                });
-                turned += (b[0] * c[1] - b[1] * c[0]).atan2(b[0] * c[0] + b[1] * c[1]);
-            }
+        let normal = normal(face);
+        for [v, b, c] in turns(face) {
+            let vertex = &mut vertices[v as usize];
+            vertex.normal += normal;
+            vertex.edges += (at(b) - at(v)).normalize_or_zero() + (at(c) - at(v)).normalize_or_zero();
         }
     }
-    let sheets = turned / TAU;
-    // A whole number but for rounding.
-    ((sheets - sheets.round()).abs() < 1e-3 && sheets > 0.0).then(|| sheets.round() as u32)
+    for face in faces {
+        let normal = normal(face);
+        for &v in face {
+            let vertex = &mut vertices[v as usize];
+            vertex.blunt &= normal.dot(vertex.normal) > CERTAIN;
+            vertex.sharp &= normal.dot(vertex.edges) < -CERTAIN;
+        }
+    }
+    for face in faces {
+        for [v, b, c] in turns(face) {
+            let vertex = &mut vertices[v as usize];
+            let inward = if vertex.blunt { -vertex.normal } else { vertex.edges }.normalize_or_zero();
+            let (p, q) = (at(b) - at(v), at(c) - at(v));
+            // The angle between two edges as seen along the axis.
+            let (p, q) = (p - inward * inward.dot(p), q - inward * inward.dot(q));
+            vertex.turned += inward.dot(q.cross(p)).atan2(p.dot(q));
+        }
+    }
+    let used = || vertices.iter().filter(|vertex| vertex.edges != DVec3::ZERO || vertex.normal != DVec3::ZERO);
+    // Whole turns, but for roundings.
+    let simple = |v: &Vertex| (v.blunt || v.sharp) && (v.turned / TAU - 1.0).abs() < 1e-3;
+    used().all(simple) && 2 * used().count() == faces.len() + 4
+}
+
+/// Far above the roundings of a few unit vectors.
+const CERTAIN: f64 = 1e-9;
+
+/// What the faces round a vertex of the surface are like.
+#[derive(Debug, Clone)]
+struct Vertex {
+    /// Sum of the faces' normals: its opposite points inwards if all of them turn the same way, `blunt`.
+    normal: DVec3,
+    /// Sum of the directions of the edges: it points inwards if it is behind all faces, `sharp`.
+    edges: DVec3,
+    blunt: bool,
+    sharp: bool,
+    /// The angle round the axis that points inwards that the faces cover.
+    turned: f64,
+}
+
+impl Vertex {
+    const NEW: Vertex = Vertex { normal: DVec3::ZERO, edges: DVec3::ZERO, blunt: true, sharp: true, turned: 0.0 };
 }

@@ -1,7 +1,7 @@
 //! Cells that occlude one another in a ring, and cells that overlap.
 
 use glam::DVec3;
-use tetlux_mesh::TetMesh;
+use tetlux_mesh::{TetMesh, procedural};
 use tetlux_order::Method::{Auto, Exact, Mpvo};
 use tetlux_order::{Method, Sampling};
 
@@ -28,7 +28,7 @@ fn assert_groups(what: &str, mesh: &TetMesh, view: &Sampling, methods: &[Method]
 
 #[test]
 fn three_cells_without_a_common_face() {
-    let mesh = assemble(&shapes::three_cycle());
+    let mesh = assemble(&procedural::three_cycle());
     let view = perspective(DVec3::splat(12.0), DVec3::ZERO, 0.2, 64);
     assert_groups("three cells", &mesh, &view, &[Exact, Auto], &[3]);
     // That they are a ring is no matter of taste: no order of the three is right.
@@ -46,7 +46,7 @@ fn three_cells_without_a_common_face() {
 #[test]
 fn rings_of_any_size() {
     for k in 3..=32 {
-        let mesh = assemble(&shapes::ring(k, 60.0));
+        let mesh = assemble(&procedural::ring(k, 60.0));
         for height in [8.0, -8.0] {
             let along = perspective(DVec3::new(0.013, 0.007, height), DVec3::Z * 0.5, 0.2, 96);
             assert_groups(&format!("ring of {k} from {height}"), &mesh, &along, &[Exact], &[k]);
@@ -58,7 +58,7 @@ fn rings_of_any_size() {
 
 #[test]
 fn a_convex_mesh_with_a_cycle_through_faces() {
-    let mesh = assemble(&shapes::filled_ring());
+    let mesh = assemble(&procedural::filled_ring());
     let report = mesh.validate();
     // 11 cells of 4 faces, 18 of them shared.
     assert_eq!((report.cells, report.boundary_faces, report.components), (11, 44 - 2 * 18, 1));

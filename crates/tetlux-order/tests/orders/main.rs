@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test's helpers fail and tell like the test")]
 
 mod cycles;
+mod facts;
 mod grids;
 mod property;
 mod random;

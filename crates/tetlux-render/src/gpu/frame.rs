@@ -132,8 +132,8 @@ pub(super) fn draw(
     let batch = batch_size(&device.limits(), vertices).min(cells.max(1));
     let stretches = stretches(cells, if groups.is_some() { job.groups } else { &[] }, batch);
     let projects = pipelines.compute.is_some() || groups.is_some();
-    let projected = projects
-        .then(|| make.empty("projected cells", u64::from(batch) * CELL_BYTES, wgpu::BufferUsages::STORAGE));
+    let projected =
+        projects.then(|| make.empty("projected cells", u64::from(batch) * CELL_BYTES, wgpu::BufferUsages::STORAGE));
     let picture = Picture::new(device, job.size, variant.format());
     let [texture, readback] = picture.bytes();
     make.count(0, 1, texture);

@@ -1,7 +1,7 @@
 //! Pictures by instruction set, group, size and error budget, and against the shaders' twin.
 
 use glam::{DVec3, Vec2, Vec3};
-use tetlux_mesh::procedural::{Parts, Split, cuboid};
+use tetlux_mesh::procedural::{Split, cuboid, three_cycle};
 use tetlux_mesh::{Component, Field, TetMesh};
 use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
@@ -36,8 +36,7 @@ impl Drawing {
         let (background, method) = ([0.0; 3], Method::default());
         let classification = Classification::OneField(transfer.clone());
         let (second, lighting, unit_distance) = (None, None, 1.0);
-        let scene =
-            Scene { scalar, second, classification, lighting, unit_distance, camera, size, background, method };
+        let scene = Scene { scalar, second, classification, lighting, unit_distance, camera, size, background, method };
         let view = scene.camera.view(size).unwrap();
         let device = DeviceMesh::new(&mesh, &scene.scalar);
         Drawing { mesh, transfer, scene, view, device }
@@ -239,13 +238,7 @@ fn the_shaders_twin_draws_the_same() {
 
 /// Three cells each of which hides a part of the next.
 fn cycle() -> Drawing {
-    let first = [[0.0, 1.0, 1.0], [-1.0, 0.0, 0.0], [1.0, 2.0, 1.0], [0.0, -1.0, 1.0]];
-    let turn = |[x, y, z]: [f64; 3]| [z, x, y];
-    let cells = [first, first.map(turn), first.map(turn).map(turn)];
-    let parts = Parts {
-        points: cells.as_flattened().iter().map(|&p| p.into()).collect(),
-        cells: (0..3).map(|c| [4 * c, 4 * c + 1, 4 * c + 2, 4 * c + 3]).collect(),
-    };
+    let parts = three_cycle();
     let field = Field::cell("s", 1, vec![0.0, 1.0, 2.0]);
     let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![field]).unwrap();
     let color = [[0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 1.0, 0.0], [2.0, 0.0, 0.0, 1.0]];
