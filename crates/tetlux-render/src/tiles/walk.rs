@@ -138,11 +138,11 @@ impl<'a, S: Simd> Walk<'a, S> {
         }
     }
 
-    /// The tile's first pixel, counted from a cell's first.
+    /// The tile's first pixel, counted from the middle of a cell's box.
     #[inline(always)]
     fn from(&self, record: &Record) -> (f32, f32) {
-        let from = |axis: usize| self.origin[axis] as f32 - record.first[axis] as f32;
-        (from(0), from(1))
+        let [x, y] = record.middle();
+        (self.origin[0] as f32 - x as f32, self.origin[1] as f32 - y as f32)
     }
 
     /// The blocks alive that a cell may cover.
