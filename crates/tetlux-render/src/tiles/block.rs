@@ -35,7 +35,7 @@ pub(crate) struct Segments<S: Simd> {
     pub(crate) depth: S::f32s,
 }
 
-/// The segments of the rays through some pixels, counted from the cell's first, `stretch` the rays' length for a depth
+/// The segments of the rays through some pixels, counted from the middle of the cell's box, `stretch` the rays' length for a depth
 /// of 1; `None` if all miss the cell.
 #[inline(always)]
 pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(

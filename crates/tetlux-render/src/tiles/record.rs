@@ -32,17 +32,17 @@ pub(crate) struct Point {
     scalar: f64,
 }
 
-/// A cell ready to be drawn. Pixels are counted from the box's first.
+/// A cell ready to be drawn. Pixels are counted from the box's middle, where single precision misses by the least.
 #[derive(Clone, Copy, Default)]
 #[repr(C, align(128))]
 pub(crate) struct Record {
-    /// (dw/dx, dw/dy, w at the first pixel) of each face's plane, front faces first.
+    /// (dw/dx, dw/dy, w at the middle) of each face's plane, front faces first.
     pub(crate) planes: [[f32; 3]; 4],
     /// How many of the planes are front faces.
     pub(crate) fronts: u32,
     /// w of the nearest vertex, or of the near plane; that of the farthest vertex is 0.
     pub(crate) nearest: f32,
-    /// The scalar at depth `z_ref`, less `base`: (d/dx, d/dy, at the first pixel).
+    /// The scalar at depth `z_ref`, less `base`: (d/dx, d/dy, at the middle).
     pub(crate) scalar: [f32; 3],
     /// Perspective: the scalar's gradient along the ray times `z_ref` is the scalar at `z_ref` plus this.
     /// Orthographic: the gradient along the ray.
@@ -60,6 +60,14 @@ pub(crate) struct Record {
     pub(crate) end: [u32; 2],
     /// The piece of the transfer function at the lowest scalar, and the last that the range reaches into.
     pub(crate) pieces: [u32; 2],
+}
+
+impl Record {
+    /// The pixel in the box's middle.
+    #[inline(always)]
+    pub(crate) fn middle(&self) -> [u32; 2] {
+        [self.first[0].midpoint(self.end[0]), self.first[1].midpoint(self.end[1])]
+    }
 }
 
 /// Pixels by which a cell's box is widened, for rounding.
@@ -172,8 +180,9 @@ impl SetUp<'_> {
                 }
                 scalars[i][lane] = points[i].scalar - f64::from(record.base);
             }
+            let middle = record.middle();
             for axis in 0..2 {
-                across[axis][lane] = f64::from(record.first[axis]) + 0.5 - self.eye.middle[axis];
+                across[axis][lane] = f64::from(middle[axis]) + 0.5 - self.eye.middle[axis];
             }
         }
         if !seen {
@@ -192,7 +201,7 @@ impl SetUp<'_> {
         let eye = [frame[0] + offset, frame[1] + offset, frame[2] + offset, frame[3] + offset];
         let farthest = eye[0].z.max(eye[1].z).max(eye[2].z.max(eye[3].z)).max(self.eye.near);
         let nearest = eye[0].z.min(eye[1].z).min(eye[2].z.min(eye[3].z)).max(self.eye.near).min(farthest);
-        // The ray through the first pixel: in perspective where it is at depth z_ref.
+        // The ray through the middle pixel: in perspective where it is at depth z_ref.
         let scale = if self.eye.orthographic { splat(self.eye.pixel) } else { farthest * self.eye.pixel };
         let origin = Vector { x: load(&across[0]) * scale, y: load(&across[1]) * scale, z: farthest };
 
@@ -238,8 +247,8 @@ impl SetUp<'_> {
         }
     }
 
-    /// (dw/dx, dw/dy, w at the first pixel) of the plane through a, b, c with normal n, and +1 if n points away from
-    /// the eye's side, else -1. `origin` is the point at depth `z_ref` on the first pixel's ray, `scale` the side of a
+    /// (dw/dx, dw/dy, w at the middle) of the plane through a, b, c with normal n, and +1 if n points away from
+    /// the eye's side, else -1. `origin` is the point at depth `z_ref` on the middle's ray, `scale` the side of a
     /// pixel there.
     #[inline(always)]
     fn plane<S: Simd>(

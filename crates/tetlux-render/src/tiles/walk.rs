@@ -138,11 +138,11 @@ impl<'a, S: Simd> Walk<'a, S> {
         }
     }
 
-    /// The tile's first pixel, counted from a cell's first.
+    /// The tile's first pixel, counted from the middle of a cell's box.
     #[inline(always)]
     fn from(&self, record: &Record) -> (f32, f32) {
-        let from = |axis: usize| self.origin[axis] as f32 - record.first[axis] as f32;
-        (from(0), from(1))
+        let [x, y] = record.middle();
+        (self.origin[0] as f32 - x as f32, self.origin[1] as f32 - y as f32)
     }
 
     /// The blocks alive that a cell may cover.
@@ -309,47 +309,48 @@ impl<S: Simd> Walk<'_, S> {
 /// Gaps of a Shell sort (Ciura 2001).
 const GAPS: [usize; 8] = [701, 301, 132, 57, 23, 10, 4, 1];
 
-/// Sorts every lane by depth. Fast where the fragments are nearly sorted, as they are if their cells are.
+/// Moves a fragment that are tried before fragments count as unsorted.
+const PATIENCE: usize = 8;
+
+/// Sorts every lane by depth: by insertion if the fragments are nearly sorted, as they are if their cells are.
 #[inline(always)]
 fn sort<S: Simd>(fragments: &mut [Fragment<S>]) {
-    let mut disorder = 0;
-    for i in 1..fragments.len() {
-        disorder += usize::from(fragments[i - 1].depth.simd_gt(fragments[i].depth).any_true());
-    }
-    let gaps = match disorder {
-        0 => return,
-        n if 2 * n < fragments.len() => &GAPS[GAPS.len() - 1..],
-        _ => &GAPS[..],
-    };
-    for &gap in gaps {
-        for end in gap..fragments.len() {
-            let mut moved = fragments[end];
-            let mut i = end;
-            while i >= gap {
-                let near = fragments[i - gap];
-                let swap = near.depth.simd_gt(moved.depth);
-                if !swap.any_true() {
-                    break;
-                }
-                let far = Fragment {
-                    depth: swap.select(near.depth, moved.depth),
-                    color: [
-                        swap.select(near.color[0], moved.color[0]),
-                        swap.select(near.color[1], moved.color[1]),
-                        swap.select(near.color[2], moved.color[2]),
-                        swap.select(near.color[3], moved.color[3]),
-                    ],
-                };
-                moved.depth = swap.select(moved.depth, near.depth);
-                for k in 0..4 {
-                    moved.color[k] = swap.select(moved.color[k], near.color[k]);
-                }
-                fragments[i] = far;
-                i -= gap;
-            }
-            if i < end {
-                fragments[i] = moved;
-            }
+    if !insert(fragments, 1, PATIENCE * fragments.len()) {
+        for gap in GAPS {
+            insert(fragments, gap, usize::MAX);
         }
     }
+}
+
+/// Sorts those that are `gap` apart by insertion; false if that would take more than so many moves.
+#[inline(always)]
+fn insert<S: Simd>(fragments: &mut [Fragment<S>], gap: usize, moves: usize) -> bool {
+    let mut left = moves;
+    for end in gap..fragments.len() {
+        let mut moved = fragments[end];
+        let mut i = end;
+        while i >= gap {
+            let near = fragments[i - gap];
+            let swap = near.depth.simd_gt(moved.depth);
+            if !swap.any_true() {
+                break;
+            }
+            fragments[i].depth = swap.select(near.depth, moved.depth);
+            moved.depth = swap.select(moved.depth, near.depth);
+            for k in 0..4 {
+                fragments[i].color[k] = swap.select(near.color[k], moved.color[k]);
+                moved.color[k] = swap.select(moved.color[k], near.color[k]);
+            }
+            i -= gap;
+        }
+        if i < end {
+            fragments[i] = moved;
+            let count = (end - i) / gap;
+            if count > left {
+                return false;
+            }
+            left -= count;
+        }
+    }
+    true
 }
