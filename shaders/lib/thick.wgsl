@@ -8,13 +8,14 @@
 // over a vertex, is class 1 with triangles of no area. The triangles are a fan around the thick vertex.
 import package::lib::view::{Vertex, view, ORTHOGRAPHIC};
 import package::lib::mesh::{Corners};
-import package::lib::cell::{Cell, project_cell};
+import package::lib::cell::{Cell, DEEP, cell_kind, project_cell};
 import package::lib::silhouette::{cross2};
 import package::axes::quantity::{Quantity, quantity_of, packed};
 import package::axes::shading::{pieces_between};
 
-// Kind of a cell that is decomposed, as stored in gradient.w. Those that reach over the near plane are not: they keep
-// their planes, and fragments find their segments as in lib::ray.
+// Kind of a cell that is decomposed, as stored in gradient.w. Those that reach over the near plane, or far in depth, are
+// not: their vertices lie so far from the picture that interpolation over it would lose its digits. They keep their
+// planes, and fragments find their segments as in lib::ray.
 const THICK = 3.0;
 
 // A thick cell as it is stored, in the place of a Cell:
@@ -87,10 +88,11 @@ fn point_over(c: Corners, area: vec4<f32>, members: u32) -> Point {
     return point;
 }
 
-// The cell decomposed, or its planes if it reaches over the near plane.
+// The cell decomposed, or its planes if it is too close to the eye.
 fn decompose(c: Corners, entry: u32) -> Cell {
     let v = c.vertices;
-    if min(min(v[0].eye.z, v[1].eye.z), min(v[2].eye.z, v[3].eye.z)) < view.near {
+    let z = vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z);
+    if min(min(z.x, z.y), min(z.z, z.w)) < view.near || cell_kind(z) == DEEP {
         return project_cell(v, c.scalars, c.parity);
     }
     var cell: Cell;

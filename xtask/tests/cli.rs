@@ -113,6 +113,25 @@ fn the_built_in_scene_is_rendered() {
 }
 
 #[test]
+fn a_method_is_named_by_flags_and_told_in_the_report() {
+    let folder = folder();
+    let flags =
+        "--backend gpu --size 20x10 --integrator q --table-precision u8 --interpolation perspective --json m.json";
+    let output = run(folder.path(), &["render"].into_iter().chain(flags.split(' ')).collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let text = stdout(&output);
+    for part in ["interpolation  perspective", "integrator     q", "table          u8", "2 textures", "cells drawn"] {
+        assert!(text.contains(part), "\"{part}\" is not in:\n{text}");
+    }
+    let json = json(&folder.path().join("m.json"));
+    assert_eq!((&json["integrator"], &json["table_precision"]), (&serde_json::json!("q"), &serde_json::json!("u8")));
+    assert_eq!(json["resources"]["textures"], 2);
+    // What cannot be is told before anything is drawn.
+    let refused = ["render", "--integrator", "preint", "--classification", "vertex"];
+    assert_fails(&run(folder.path(), &refused), &["preint", "vertex"]);
+}
+
+#[test]
 fn flags_override_the_scene() {
     let folder = folder();
     let args = ["render", "scene.toml", "--field", "flow", "--backend", "cpu", "--size", "20x10", "--json", "f.json"];

@@ -287,9 +287,9 @@ fn cells_around_the_eye_are_drawn_by_every_geometry() {
                 .iter()
                 .zip(exact.pixels())
                 .map(|(a, b)| (0..4).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max));
-            // Vertices rounded to 1/256 pixel, close to the eye: a few pixels on edges.
+            // Vertices rounded to 1/256 pixel: a few pixels on edges of cells.
             let off = differences.filter(|&d| d > 2e-3).count();
-            assert!(off < 64 * 64 / 50, "{projection}: {off} pixels differ");
+            assert!(off <= 8, "{projection}: {off} pixels differ");
         }
     }
 }

@@ -62,7 +62,11 @@ pub(super) fn encode(table: &Table, precision: TablePrecision) -> Encoded {
             match precision {
                 TablePrecision::U8 => encoded.bytes.push((share * 255.0).round() as u8),
                 TablePrecision::U16 => encoded.bytes.extend(((share * 65535.0).round() as u16).to_ne_bytes()),
-                TablePrecision::F16 => encoded.bytes.extend(half::f16::from_f32(value).to_ne_bytes()),
+                TablePrecision::F16 => {
+                    // The largest half instead of an infinity, which interpolation would make a NaN.
+                    let limit = half::f16::MAX.to_f32();
+                    encoded.bytes.extend(half::f16::from_f32(value.clamp(-limit, limit)).to_ne_bytes());
+                }
                 TablePrecision::Auto | TablePrecision::F32 => encoded.bytes.extend(value.to_ne_bytes()),
             }
         }
@@ -139,6 +143,23 @@ mod tests {
                 let error = (decoded(&encoded, index, precision) - value).abs();
                 assert!(error <= 2.0 * f32::EPSILON, "{precision} texel {index}: {error:e}");
             }
+        }
+    }
+
+    #[test]
+    fn halves_that_overflow_stay_finite() {
+        let transfer = tetlux_tables::TransferSpec {
+            color: vec![[0.0, 1.0, 1.0, 1.0]],
+            opacity: vec![[0.0, 1.0]],
+            range: [0.0, 1.0],
+            unit_distance: 1e-6,
+            max_length: 1.0,
+        };
+        let kind = TableKind::MeanExtinction { transfer };
+        let spec = TableSpec { id: "t".into(), kind, size: [2, 2, 1], precision: Precision::F32 };
+        let encoded = encode(&Table::build(&spec).unwrap(), TablePrecision::F16);
+        for index in 0..4 {
+            assert_eq!(decoded(&encoded, index, TablePrecision::F16), 65504.0);
         }
     }
 
