@@ -54,6 +54,9 @@ pub(crate) struct Walk<'a, S: Simd> {
     alive: u64,
     /// Length of the rays for a depth of 1.
     stretch: [f32; PIXELS],
+    /// Of a run of cells without order: the blocks that each may cover, and a block's fragments. Kept for the next run.
+    masks: Vec<u64>,
+    fragments: Vec<Fragment<S>>,
 }
 
 /// Where in a tile's vectors of so many lanes the pixel at (x, y) is.
@@ -69,7 +72,16 @@ impl<'a, S: Simd> Walk<'a, S> {
         let lanes = S::f32s::LEN;
         let blocks = PIXELS / lanes;
         let alive = u64::MAX >> (64 - blocks);
-        let mut walk = Walk { simd, light, origin, tile: [[0.0; PIXELS]; 4], alive, stretch: [1.0; PIXELS] };
+        let mut walk = Walk {
+            simd,
+            light,
+            origin,
+            tile: [[0.0; PIXELS]; 4],
+            alive,
+            stretch: [1.0; PIXELS],
+            masks: Vec::new(),
+            fragments: Vec::new(),
+        };
         for (y, row) in rows.iter().enumerate() {
             for (x, pixel) in row.iter().enumerate() {
                 for i in 0..4 {
@@ -264,14 +276,14 @@ impl<S: Simd> Walk<'_, S> {
     /// Composites cells whose order is not known behind what is there: by depth in every pixel.
     #[inline(always)]
     pub(crate) fn add_sorted<const ORTHOGRAPHIC: bool>(&mut self, chunks: &[Chunk], run: &[u32]) {
-        let mut masks = Vec::with_capacity(run.len());
+        let (mut masks, mut fragments) = (std::mem::take(&mut self.masks), std::mem::take(&mut self.fragments));
+        masks.clear();
         let mut blocks = 0;
         for &i in run {
             let mask = self.blocks(at(chunks, i));
             blocks |= mask;
             masks.push(mask);
         }
-        let mut fragments: Vec<Fragment<S>> = Vec::new();
         while blocks != 0 {
             let block = blocks.trailing_zeros() as usize;
             blocks &= blocks - 1;
@@ -303,6 +315,7 @@ impl<S: Simd> Walk<'_, S> {
             }
             self.store(block, &pixels);
         }
+        (self.masks, self.fragments) = (masks, fragments);
     }
 }
 
