@@ -27,10 +27,10 @@ macro_rules! modules {
 
 /// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
 pub const MODULES: &[(&str, &str)] = modules! {
-    lib { cell mesh mesh_buffers published ray segment silhouette span symmetric transfer view }
+    lib { cell flat mesh mesh_buffers published ray segment silhouette span symmetric transfer view }
     quantity { color scalar }
     data { cell point }
-    geometry { ray }
+    geometry { ray vicp }
     shading { post_exact vertex }
     output { dither plain }
     weights { average direct linear symmetric }

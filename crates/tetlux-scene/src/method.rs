@@ -66,6 +66,9 @@ named! {
         Auto,
         /// Projected tetrahedra, a compute stage before the draw: Shirley and Tuchman 1990.
         Pt,
+        /// View-independent cell projection: front faces drawn, the back end found in the fragment: Weiler, Kraus, Merz
+        /// and Ertl 2003.
+        Vicp,
     }
 }
 

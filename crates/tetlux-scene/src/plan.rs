@@ -140,6 +140,7 @@ fn says(choice: impl std::fmt::Display, reason: &str) -> String {
 fn of_projection(projection: CellProjection) -> &'static str {
     match projection {
         CellProjection::Auto | CellProjection::Pt => "a compute stage projects each cell once",
+        CellProjection::Vicp => "front faces are drawn, fragments find the back end",
     }
 }
 

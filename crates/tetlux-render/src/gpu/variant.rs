@@ -1,6 +1,6 @@
 //! Which shaders a picture needs, and what they bind: its method as composition.
 
-use tetlux_scene::{Classification, Integrator, Interpolation, Plan, Target};
+use tetlux_scene::{CellProjection, Classification, Integrator, Interpolation, Plan, Target};
 use tetlux_shaders::{Choice, DEFAULTS, choose};
 
 /// What makes one set of pipelines differ from another.
@@ -8,6 +8,7 @@ use tetlux_shaders::{Choice, DEFAULTS, choose};
 pub(crate) struct Variant {
     pub(crate) orthographic: bool,
     pub(crate) cell_data: bool,
+    pub(crate) projection: CellProjection,
     pub(crate) interpolation: Interpolation,
     pub(crate) integrator: Integrator,
     pub(crate) classification: Classification,
@@ -39,6 +40,7 @@ impl Variant {
         Variant {
             orthographic: plan.view.orthographic,
             cell_data,
+            projection: plan.projection,
             interpolation: plan.interpolation,
             integrator: plan.integrator,
             classification: plan.classification,
@@ -58,8 +60,9 @@ impl Variant {
             Integrator::Auto | Integrator::Direct => "weights::direct",
             Integrator::Symmetric => "weights::symmetric",
         };
-        let geometry = match self.interpolation {
-            Interpolation::Auto | Interpolation::Ray => "geometry::ray",
+        let geometry = match (self.projection, self.interpolation) {
+            (CellProjection::Vicp, _) => "geometry::vicp",
+            (_, Interpolation::Auto | Interpolation::Ray) => "geometry::ray",
         };
         let data = if self.cell_data { "data::cell" } else { "data::point" };
         let output = if self.target == Target::Rgba8Dither { "output::dither" } else { "output::plain" };
@@ -77,9 +80,11 @@ impl Variant {
     }
 
     pub(crate) fn geometry(&self) -> Geometry {
-        match self.interpolation {
-            Interpolation::Auto | Interpolation::Ray => Geometry { compute: Some("stages::project"), vertices: 6 },
-        }
+        let vertices = match (self.projection, self.interpolation) {
+            (CellProjection::Vicp, _) => 12,
+            (_, Interpolation::Auto | Interpolation::Ray) => 6,
+        };
+        Geometry { compute: Some("stages::project"), vertices }
     }
 
     /// The buffers of bind group 0 that the shaders read, ascending.

@@ -1,0 +1,122 @@
+//! Every projection of cells makes the same picture: that of the f64 reference.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test's helpers fail and tell like the test")]
+
+use glam::DVec3;
+use tetlux_mesh::TetMesh;
+use tetlux_mesh::procedural::{Split, cuboid, sphere_shell, wing};
+use tetlux_optics::transfer::TransferFunction;
+use tetlux_render::Frame;
+use tetlux_scene::{Backend, Camera, CellProjection, Method, Order, Plan, Scene};
+use tetlux_tests::{
+    Way, mesh_of, mesh_with, orthographic, perspective, pixel_error, reference, reference_beside, render, renderer,
+    scene, transfer, white,
+};
+
+/// What projections that find segments by planes or by offsets in single precision may be off by.
+const TOLERANCE: f64 = 1e-4;
+
+/// Pixels by which rays are moved to see whether their centres lie on a silhouette.
+const BESIDE: f64 = 1e-4;
+
+const SIZE: [u32; 2] = [64, 64];
+
+fn draw(mesh: &TetMesh, scene: &Scene, method: Method) -> Frame {
+    let scene = Scene { method: Method { backend: Backend::Gpu, ..method }, ..scene.clone() };
+    let plan = Plan::new(&scene, mesh, renderer().device()).unwrap();
+    renderer().render(&scene, mesh, &plan).unwrap()
+}
+
+fn by(projection: CellProjection) -> Method {
+    Method { projection, ..Method::default() }
+}
+
+/// Largest error of any pixel that is on no silhouette, and the number of those that are.
+fn judged(frame: &Frame, mesh: &TetMesh, scene: &Scene) -> (f64, usize) {
+    let truth = reference(mesh, scene);
+    let around = [(-BESIDE, -BESIDE), (-BESIDE, BESIDE), (BESIDE, -BESIDE), (BESIDE, BESIDE)];
+    let around = around.map(|(x, y)| reference_beside(mesh, scene, [x, y]));
+    // Steeper than a hundred a pixel is no slope.
+    let jumps = |i: usize| around.iter().any(|a| (0..4).any(|k| (a[i][k] - truth[i][k]).abs() > 100.0 * BESIDE));
+    let (mut worst, mut on) = (0.0f64, 0);
+    for (i, &pixel) in frame.image.pixels().iter().enumerate() {
+        let error = pixel_error(pixel, truth[i]);
+        if error <= worst {
+            continue;
+        }
+        if jumps(i) {
+            on += 1;
+        } else {
+            worst = error;
+        }
+    }
+    (worst, on)
+}
+
+/// A body, and a camera inside it or close by, beside those outside.
+fn meshes() -> Vec<(&'static str, TetMesh, DVec3)> {
+    let field = |p: DVec3| (1.7 * p.x).sin() + p.y * p.z;
+    let two = {
+        let mut parts = cuboid([3, 2, 2], Split::Five, [-DVec3::ONE, DVec3::new(-0.1, 0.6, 0.7)]);
+        parts.append(&cuboid([2, 3, 2], Split::Six, [DVec3::new(0.15, -0.8, -0.9), DVec3::new(1.0, 1.0, 0.4)]));
+        parts
+    };
+    let wing = wing(3, 1500);
+    let shell = sphere_shell([9, 5, 2], Split::Six, DVec3::ZERO, [0.55, 1.0]);
+    vec![
+        (
+            "six cells",
+            mesh_of(&cuboid([1, 1, 1], Split::Six, [-DVec3::ONE, DVec3::ONE]), field),
+            DVec3::new(0.3, 0.2, -0.1),
+        ),
+        ("a shell", mesh_of(&shell, field), DVec3::new(0.5, 0.4, -0.5)),
+        ("two bodies", mesh_of(&two, field), DVec3::new(-0.7, 0.1, 0.2)),
+        ("a wing", mesh_with(&wing.parts, wing.field), DVec3::new(0.5, 0.3, 0.2)),
+    ]
+}
+
+fn cameras(mesh: &TetMesh, inside: DVec3) -> [Camera; 4] {
+    let [low, high] = mesh.bounds();
+    let (middle, width) = ((low + high) * 0.5, (high - low).max_element());
+    let outside = middle + DVec3::new(1.1, -1.6, 0.9) * width;
+    [
+        perspective(outside, middle, 40.0),
+        orthographic(outside, middle, 0.75 * width),
+        perspective(inside, middle, 80.0),
+        orthographic(inside, middle, 0.6 * width),
+    ]
+}
+
+/// Luminance and extinction with peaks and steps over a field's range.
+fn colors(mesh: &TetMesh) -> TransferFunction {
+    let [low, high] = scene(mesh, white(&[[0.0, 1.0]]), perspective(DVec3::X, DVec3::ZERO, 1.0), [1, 1]).scalar.range;
+    let at = |t: f64| low + t * (high - low);
+    transfer(
+        &[[at(0.0), 0.9, 0.1, 0.2], [at(0.4), 0.2, 0.8, 0.3], [at(0.6), 0.1, 0.3, 1.0], [at(1.0), 1.0, 0.9, 0.2]],
+        &[[at(0.0), 1.0], [at(0.3), 0.1], [at(0.5), 0.8], [at(0.55), 3.0], [at(0.6), 0.3], [at(1.0), 2.0]],
+    )
+}
+
+/// The same in white: the order of cells does not matter.
+fn without_color(mesh: &TetMesh) -> TransferFunction {
+    let nodes: Vec<[f64; 2]> = colors(mesh).opacity_nodes().iter().map(|n| [n.s, n.opacity]).collect();
+    white(&nodes)
+}
+
+#[test]
+fn front_faces_make_the_picture_of_the_silhouettes() {
+    for (what, mesh, inside) in meshes() {
+        for camera in cameras(&mesh, inside) {
+            let white = scene(&mesh, without_color(&mesh), camera, SIZE);
+            let (error, on) = judged(&draw(&mesh, &white, by(CellProjection::Vicp)), &mesh, &white);
+            println!("{what}, {:?}: {error:.1e}, {on} on silhouettes", camera.projection);
+            assert!(error <= TOLERANCE, "{what}, {:?}: {error:.1e}", camera.projection);
+            // Every fragment comes from the same planes, whatever covers it: no bit differs.
+            let colored = scene(&mesh, colors(&mesh), camera, SIZE);
+            let ordered = Method { order: Order::Centroid, ..by(CellProjection::Vicp) };
+            let picture = draw(&mesh, &colored, ordered).image;
+            assert_eq!(picture, render(&mesh, &colored, Way::GpuCentroid), "{what}, {:?}", camera.projection);
+            assert!(picture.pixels().iter().any(|p| p[3] > 0.1), "{what} is seen");
+        }
+    }
+}
