@@ -120,3 +120,17 @@ fn front_faces_make_the_picture_of_the_silhouettes() {
         }
     }
 }
+
+#[test]
+fn a_march_is_right_without_an_order() {
+    for (what, mesh, inside) in meshes() {
+        for camera in cameras(&mesh, inside) {
+            let colored = scene(&mesh, colors(&mesh), camera, SIZE);
+            let frame = draw(&mesh, &colored, by(CellProjection::March));
+            let (error, on) = judged(&frame, &mesh, &colored);
+            println!("{what}, {:?}: {error:.1e}, {on} on silhouettes", camera.projection);
+            assert!(error <= TOLERANCE, "{what}, {:?}: {error:.1e}", camera.projection);
+            assert!(frame.image.pixels().iter().any(|p| p[3] > 0.1), "{what} is seen");
+        }
+    }
+}

@@ -60,7 +60,7 @@ pub(crate) struct Segment {
 const DEEP_RATIO: f32 = 4.0;
 const STEEPEST: f32 = 1e20;
 const EDGE_ON: f32 = 1e-6;
-const NUDGE: Vec2 = Vec2::new(7.3e-5, 4.1e-5);
+pub(crate) const NUDGE: Vec2 = Vec2::new(7.3e-5, 4.1e-5);
 
 impl Lens {
     pub(crate) fn vertex(&self, position: Vec3) -> Vertex {

@@ -1,6 +1,7 @@
 //! The wgpu back end: cells projected in a compute stage, drawn back to front, blended by the fixed-function hardware.
 
 pub(crate) mod frame;
+pub(crate) mod march;
 mod picture;
 pub(crate) mod pipelines;
 pub(crate) mod variant;
@@ -10,8 +11,10 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use tetlux_scene::{Device, Plan};
 
+use crate::march::March;
 use crate::stage::Stages;
 use crate::{Job, RenderError, Resources};
+use march::Marcher;
 use pipelines::Pipelines;
 use variant::Variant;
 
@@ -21,8 +24,12 @@ pub(crate) struct Gpu {
     adapter: wgpu::Adapter,
     device: Device,
     open: OnceLock<Open>,
-    pipelines: Mutex<HashMap<Variant, Arc<Pipelines>>>,
+    pipelines: Made<Pipelines>,
+    marchers: Made<Marcher>,
 }
+
+/// What has been made for each variant of the shaders.
+type Made<T> = Mutex<HashMap<Variant, Arc<T>>>;
 
 #[derive(Debug)]
 struct Open {
@@ -54,7 +61,7 @@ impl Gpu {
             software: info.device_type == wgpu::DeviceType::Cpu,
             blends_f32: adapter.features().contains(FEATURES),
         };
-        Some(Gpu { adapter, device, open: OnceLock::new(), pipelines: Mutex::default() })
+        Some(Gpu { adapter, device, open: OnceLock::new(), pipelines: Mutex::default(), marchers: Mutex::default() })
     }
 
     pub(crate) fn device(&self) -> &Device {
@@ -76,21 +83,17 @@ impl Gpu {
             }
         };
         let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty());
-        // A panic elsewhere cannot have left the map half changed.
-        let known = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).get(&variant).cloned();
-        let pipelines = match known {
-            Some(pipelines) => pipelines,
-            None => {
-                let made =
-                    stages.run("pipelines", || self.checked(open, || Pipelines::new(&open.device, variant)))??;
-                let made = Arc::new(made);
-                self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).insert(variant, made.clone());
-                made
-            }
-        };
         self.check_limits(open, job)?;
-        let draw = || self.checked(open, || frame::draw(open, &variant, &pipelines, job));
-        stages.run("draw", draw)?.map_err(|e| self.failed(e))
+        let drawn = if let Some(march) = &job.march {
+            let make = || self.checked(open, || Marcher::new(&open.device, variant));
+            let marcher = made(&self.marchers, variant, stages, make)?;
+            stages.run("draw", || self.checked(open, || marcher.draw(open, &variant, job, march)))?
+        } else {
+            let make = || self.checked(open, || Pipelines::new(&open.device, variant));
+            let pipelines = made(&self.pipelines, variant, stages, make)?;
+            stages.run("draw", || self.checked(open, || frame::draw(open, &variant, &pipelines, job)))?
+        };
+        drawn.map_err(|e| self.failed(e))
     }
 
     fn open(&self) -> Result<Open, RenderError> {
@@ -131,6 +134,7 @@ impl Gpu {
             ("the mesh's points", size_of_val(&job.mesh.points[..]) as u64, "bytes", binding),
             ("the mesh's cells", size_of_val(&job.mesh.cells[..]) as u64, "bytes", binding),
             ("the transfer function", size_of_val(job.pieces) as u64, "bytes", binding),
+            ("the faces through which rays come in", job.march.as_ref().map_or(0, March::largest), "bytes", binding),
             ("the picture", u64::from(job.size[0].max(job.size[1])), "pixels a side", side),
             ("the picture", pixels * 16 + 256 * u64::from(job.size[1]), "bytes", limits.max_buffer_size),
         ] {
@@ -140,4 +144,20 @@ impl Gpu {
         }
         Ok(())
     }
+}
+
+/// What `make` makes for a variant, once.
+fn made<T>(
+    all: &Made<T>,
+    variant: Variant,
+    stages: &mut Stages,
+    make: impl FnOnce() -> Result<Result<T, RenderError>, RenderError>,
+) -> Result<Arc<T>, RenderError> {
+    // A panic elsewhere cannot have left the map half changed.
+    if let Some(known) = all.lock().unwrap_or_else(PoisonError::into_inner).get(&variant) {
+        return Ok(known.clone());
+    }
+    let made = Arc::new(stages.run("pipelines", make)??);
+    all.lock().unwrap_or_else(PoisonError::into_inner).insert(variant, made.clone());
+    Ok(made)
 }

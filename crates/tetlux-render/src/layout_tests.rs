@@ -6,11 +6,16 @@ use naga::TypeInner;
 
 use crate::device_view::DeviceView;
 use crate::gpu::frame::Batch;
+use crate::gpu::march::Limits;
 use crate::gpu::pipelines::CELL_BYTES;
 
 /// (member, offset) of a structure of the drawing stage, and its size.
 fn layout(structure: &str) -> (Vec<(String, usize)>, usize) {
-    let source = tetlux_shaders::compose("stages::draw", tetlux_shaders::DEFAULTS).unwrap();
+    layout_in("stages::draw", structure)
+}
+
+fn layout_in(stage: &str, structure: &str) -> (Vec<(String, usize)>, usize) {
+    let source = tetlux_shaders::compose(stage, tetlux_shaders::DEFAULTS).unwrap();
     let module = naga::front::wgsl::parse_str(&source).unwrap();
     let found = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(structure));
     let TypeInner::Struct { members, span } = &found.unwrap().1.inner else { panic!("{structure} is no structure") };
@@ -49,4 +54,14 @@ fn the_batch() {
 #[test]
 fn a_projected_cell() {
     assert_eq!(layout("Cell").1 as u64, CELL_BYTES);
+}
+
+#[test]
+fn the_limits_of_a_march() {
+    let ours = named([
+        ("opaque", offset_of!(Limits, opaque)),
+        ("steps", offset_of!(Limits, steps)),
+        ("unused", offset_of!(Limits, unused)),
+    ]);
+    assert_eq!(layout_in("stages::march", "March"), (ours, size_of::<Limits>()));
 }

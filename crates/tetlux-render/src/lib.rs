@@ -35,6 +35,7 @@ mod error;
 mod gpu;
 #[cfg(test)]
 mod layout_tests;
+mod march;
 mod resources;
 mod stage;
 
@@ -46,11 +47,12 @@ use tetlux_image::Image;
 use tetlux_mesh::TetMesh;
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::Eye;
-use tetlux_scene::{Backend, Device, Integrator, Order, Plan, Scene};
+use tetlux_scene::{Backend, CellProjection, Device, Integrator, Order, Plan, Scene};
 
 use crate::cell::Lens;
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::DeviceView;
+use crate::march::March;
 
 /// A picture and the time it took.
 #[derive(Debug)]
@@ -71,9 +73,16 @@ struct Job<'a> {
     weights: Weights,
     /// The cells to draw, nearest first.
     order: &'a [u32],
+    /// What a march needs instead of the order.
+    march: Option<March>,
+    /// Alpha beyond which a pixel is as good as opaque.
+    opaque: f32,
     /// Width and height in pixels.
     size: [u32; 2],
 }
+
+/// The share of the error allowed that goes to what is never seen behind a nearly opaque pixel.
+const OPAQUE_SHARE: f64 = 1.0 / 64.0;
 
 /// Renders by plan; holds the graphics device once one has been used.
 #[derive(Debug)]
@@ -122,7 +131,11 @@ impl Renderer {
             // The CPU back end has these two: the plan sees to it.
             _ => Weights::Direct,
         };
-        let job = Job { mesh: &device_mesh, lens, pieces: &pieces, weights, order: &order, size: view.size };
+        let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
+            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
+        let opaque = (1.0 - OPAQUE_SHARE * scene.method.max_error.clamp(0.0, 1.0)) as f32;
+        let size = view.size;
+        let job = Job { mesh: &device_mesh, lens, pieces: &pieces, weights, order: &order, march, opaque, size };
         let (pixels, resources) = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {

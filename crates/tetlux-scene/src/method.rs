@@ -69,6 +69,9 @@ named! {
         /// View-independent cell projection: front faces drawn, the back end found in the fragment: Weiler, Kraus, Merz
         /// and Ertl 2003.
         Vicp,
+        /// Every pixel walks along its ray from cell to cell; needs no order and no blending: Garrity 1990; Weiler, Kraus,
+        /// Merz and Ertl 2003.
+        March,
     }
 }
 
@@ -172,6 +175,11 @@ impl Method {
     /// Why this combination cannot be, whatever the scene and the adapter; `None` if it can. `Auto` agrees with
     /// everything.
     pub fn refusal(&self) -> Option<String> {
+        if self.projection == CellProjection::March
+            && let Some(reason) = self.refusal_of_march()
+        {
+            return Some(reason);
+        }
         if self.backend == Backend::Gpu && self.order == Order::Pixel {
             return Some(
                 "order \"pixel\" sorts every pixel's segments, which only the CPU back end does: use --backend cpu, \
@@ -194,6 +202,34 @@ impl Method {
         None
     }
 
+    fn refusal_of_march(&self) -> Option<String> {
+        if !matches!(self.order, Order::Auto | Order::None) {
+            return Some(format!(
+                "projection \"march\" walks from cell to cell and needs no order: leave out --order {}",
+                self.order
+            ));
+        }
+        if self.interpolation != Interpolation::Auto {
+            return Some(format!(
+                "projection \"march\" draws no fragments that would come by their segments: leave out \
+                 --interpolation {}",
+                self.interpolation
+            ));
+        }
+        if !matches!(self.target, Target::Auto | Target::Rgba32f) {
+            return Some(format!(
+                "projection \"march\" composites in single precision and blends into nothing: leave out --target {}",
+                self.target
+            ));
+        }
+        None
+    }
+
+    /// Whether the march can be the projection.
+    pub(crate) fn marches(&self) -> bool {
+        matches!(self.projection, CellProjection::Auto | CellProjection::March) && self.refusal_of_march().is_none()
+    }
+
     /// The first choice that only a graphics adapter's back end can follow, in words.
     pub(crate) fn gpu_only(&self) -> Option<String> {
         if !matches!(self.projection, CellProjection::Auto) {
@@ -214,12 +250,10 @@ impl Method {
         None
     }
 
-    /// The same with every axis decided that depends on the others alone: all but back end, order and target.
+    /// The same with every axis decided that depends on the others alone: all but back end, order, projection
+    /// and target.
     pub(crate) fn decided(&self) -> Method {
         let mut method = *self;
-        if method.projection == CellProjection::Auto {
-            method.projection = CellProjection::Pt;
-        }
         if method.interpolation == Interpolation::Auto {
             method.interpolation = Interpolation::Ray;
         }
@@ -247,6 +281,22 @@ pub fn parse_name<'de, T: Deserialize<'de>>(name: &'de str) -> Result<T, Unknown
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_march_is_refused_what_it_does_not_do() {
+        let march = Method { projection: CellProjection::March, ..Method::default() };
+        assert_eq!(march.refusal(), None);
+        assert_eq!(Method { order: Order::None, target: Target::Rgba32f, ..march }.refusal(), None);
+        for (method, named) in [
+            (Method { order: Order::Centroid, ..march }, "needs no order: leave out --order centroid"),
+            (Method { target: Target::Rgba8, ..march }, "--target rgba8"),
+            (Method { interpolation: Interpolation::Ray, ..march }, "--interpolation ray"),
+            (Method { backend: Backend::Cpu, ..march }, "--backend gpu"),
+        ] {
+            let refusal = method.refusal().unwrap();
+            assert!(refusal.contains("march") && refusal.contains(named), "{refusal}");
+        }
+    }
 
     #[test]
     fn every_value_is_read_back_from_its_name() {

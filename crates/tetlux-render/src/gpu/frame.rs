@@ -31,13 +31,22 @@ fn batch_size(limits: &wgpu::Limits, vertices: u32) -> u32 {
 }
 
 /// Makes buffers and counts them.
-struct Maker<'a> {
+pub(super) struct Maker<'a> {
     device: &'a wgpu::Device,
     made: Cell<Resources>,
 }
 
-impl Maker<'_> {
-    fn count(&self, buffers: usize, textures: usize, bytes: u64) {
+impl<'a> Maker<'a> {
+    pub(super) fn new(device: &'a wgpu::Device, made: Resources) -> Maker<'a> {
+        Maker { device, made: Cell::new(made) }
+    }
+
+    /// Everything made so far.
+    pub(super) fn made(&self) -> Resources {
+        self.made.get()
+    }
+
+    pub(super) fn count(&self, buffers: usize, textures: usize, bytes: u64) {
         let mut made = self.made.get();
         made.buffers += buffers;
         made.textures += textures;
@@ -45,7 +54,7 @@ impl Maker<'_> {
         self.made.set(made);
     }
 
-    fn filled(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    pub(super) fn filled(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
         // Bindings may not be empty.
         let contents = if contents.is_empty() { &[0; 16] } else { contents };
         self.count(1, 0, contents.len() as u64);
@@ -62,7 +71,7 @@ impl Maker<'_> {
         })
     }
 
-    fn bind(&self, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
+    pub(super) fn bind(&self, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
         let entries: Vec<_> = buffers
             .iter()
             .map(|&(binding, b)| wgpu::BindGroupEntry { binding, resource: b.as_entire_binding() })
@@ -70,7 +79,7 @@ impl Maker<'_> {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    fn scene(&self, binding: Binding, job: &Job) -> wgpu::Buffer {
+    pub(super) fn scene(&self, binding: Binding, job: &Job) -> wgpu::Buffer {
         let storage = wgpu::BufferUsages::STORAGE;
         match binding {
             Binding::View => self.filled("view", bytemuck::bytes_of(&job.lens.view), wgpu::BufferUsages::UNIFORM),
@@ -96,7 +105,7 @@ pub(super) fn draw(
     let Open { device, queue } = open;
     let cells = job.order.len() as u32;
     let made = Resources { pipelines: pipelines.count(), cells: job.order.len(), ..Resources::default() };
-    let make = Maker { device, made: Cell::new(made) };
+    let make = Maker::new(device, made);
     let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b as u32, make.scene(b, job))).collect();
     let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
     let scene = make.bind(&pipelines.scene, &scene);
@@ -107,7 +116,7 @@ pub(super) fn draw(
         .compute
         .is_some()
         .then(|| make.empty("projected cells", u64::from(batch) * CELL_BYTES, wgpu::BufferUsages::STORAGE));
-    let picture = Picture::new(device, job.size, variant.format());
+    let picture = Picture::new(device, job.size, variant.format(), wgpu::TextureUsages::RENDER_ATTACHMENT);
     let [texture, readback] = picture.bytes();
     make.count(0, 1, texture);
     make.count(1, 0, readback);
@@ -153,5 +162,5 @@ pub(super) fn draw(
     }
     picture.copy(&mut encoder);
     queue.submit([encoder.finish()]);
-    Ok((picture.read(device)?, make.made.get()))
+    Ok((picture.read(device)?, make.made()))
 }

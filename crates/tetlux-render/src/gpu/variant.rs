@@ -93,7 +93,9 @@ impl Variant {
         if self.cell_data {
             bindings.push(Binding::CellScalars);
         }
-        bindings.push(Binding::Order);
+        if self.projection != CellProjection::March {
+            bindings.push(Binding::Order);
+        }
         bindings
     }
 
