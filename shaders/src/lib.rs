@@ -27,14 +27,14 @@ macro_rules! modules {
 
 /// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
 pub const MODULES: &[(&str, &str)] = modules! {
-    lib { cell flat mesh mesh_buffers published ray segment silhouette span symmetric transfer view walk }
+    lib { balanced cell flat mesh mesh_buffers published ray segment silhouette span symmetric transfer view walk }
     quantity { color scalar }
     data { cell point }
-    geometry { ray vicp }
+    geometry { balanced ray vicp }
     shading { post_exact vertex }
     output { dither plain }
     weights { average direct linear symmetric }
-    stages { draw march project }
+    stages { balance draw march project }
 };
 
 /// An axis and the module that stands for it.

@@ -134,3 +134,14 @@ fn a_march_is_right_without_an_order() {
         }
     }
 }
+
+#[test]
+fn balanced_is_measured() {
+    for (what, mesh, inside) in meshes() {
+        for camera in cameras(&mesh, inside) {
+            let white = scene(&mesh, without_color(&mesh), camera, SIZE);
+            let (error, on) = judged(&draw(&mesh, &white, by(CellProjection::Balanced)), &mesh, &white);
+            println!("{what}, {:?}: {error:.1e}, {on} on silhouettes", camera.projection);
+        }
+    }
+}

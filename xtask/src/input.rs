@@ -45,7 +45,7 @@ pub(crate) struct SceneArgs {
     /// auto, none, centroid or pixel
     #[arg(long, value_name = "NAME")]
     pub(crate) order: Option<Order>,
-    /// How cells become fragments: auto, march, pt or vicp
+    /// How cells become fragments: auto, balanced, march, pt or vicp
     #[arg(long, value_name = "NAME")]
     pub(crate) projection: Option<CellProjection>,
     /// How fragments come by their segments: auto or ray

@@ -7,7 +7,7 @@ use naga::TypeInner;
 use crate::device_view::DeviceView;
 use crate::gpu::frame::Batch;
 use crate::gpu::march::Limits;
-use crate::gpu::pipelines::CELL_BYTES;
+use crate::gpu::variant::{BALANCED_BYTES, CELL_BYTES};
 
 /// (member, offset) of a structure of the drawing stage, and its size.
 fn layout(structure: &str) -> (Vec<(String, usize)>, usize) {
@@ -64,4 +64,14 @@ fn the_limits_of_a_march() {
         ("unused", offset_of!(Limits, unused)),
     ]);
     assert_eq!(layout_in("stages::march", "March"), (ours, size_of::<Limits>()));
+}
+
+/// Position and scalar of the four vertices, which are pulled from the mesh; the face opposite goes without saying.
+const PULLED_FLOATS: u64 = 4 * 4;
+
+#[test]
+fn a_balanced_cell_moves_at_most_as_much_as_published() {
+    assert_eq!(layout_in("stages::balance", "Balanced").1 as u64, BALANCED_BYTES);
+    // Moreland and Angel 2004, section 3.1: seven floats for each of four vertices, drawn by index.
+    const { assert!(PULLED_FLOATS + BALANCED_BYTES / 4 <= 28) }
 }

@@ -69,6 +69,9 @@ named! {
         /// View-independent cell projection: front faces drawn, the back end found in the fragment: Weiler, Kraus, Merz
         /// and Ertl 2003.
         Vicp,
+        /// Distances to the faces and scalars there, found at the vertices and interpolated: Moreland and Angel 2004. Off by
+        /// what rasterisers round vertices by, 1/256 of a pixel.
+        Balanced,
         /// Every pixel walks along its ray from cell to cell; needs no order and no blending: Garrity 1990; Weiler, Kraus,
         /// Merz and Ertl 2003.
         March,
@@ -180,6 +183,11 @@ impl Method {
         {
             return Some(reason);
         }
+        if self.projection == CellProjection::Balanced
+            && let Some(reason) = self.refusal_of_balanced()
+        {
+            return Some(reason);
+        }
         if self.backend == Backend::Gpu && self.order == Order::Pixel {
             return Some(
                 "order \"pixel\" sorts every pixel's segments, which only the CPU back end does: use --backend cpu, \
@@ -221,6 +229,23 @@ impl Method {
                 "projection \"march\" composites in single precision and blends into nothing: leave out --target {}",
                 self.target
             ));
+        }
+        None
+    }
+
+    fn refusal_of_balanced(&self) -> Option<String> {
+        if self.interpolation != Interpolation::Auto {
+            return Some(format!(
+                "projection \"balanced\" interpolates segments in its own way: leave out --interpolation {}",
+                self.interpolation
+            ));
+        }
+        if self.classification == Classification::Vertex {
+            return Some(
+                "projection \"balanced\" carries one scalar a face, and colours classified at the vertices are four \
+                 numbers: use --projection pt with --classification vertex"
+                    .into(),
+            );
         }
         None
     }
@@ -295,6 +320,19 @@ mod tests {
         ] {
             let refusal = method.refusal().unwrap();
             assert!(refusal.contains("march") && refusal.contains(named), "{refusal}");
+        }
+    }
+
+    #[test]
+    fn balanced_is_refused_what_it_does_not_do() {
+        let balanced = Method { projection: CellProjection::Balanced, ..Method::default() };
+        assert_eq!(balanced.refusal(), None);
+        for (method, named) in [
+            (Method { classification: Classification::Vertex, ..balanced }, "--classification vertex"),
+            (Method { interpolation: Interpolation::Ray, ..balanced }, "--interpolation ray"),
+        ] {
+            let refusal = method.refusal().unwrap();
+            assert!(refusal.contains("balanced") && refusal.contains(named), "{refusal}");
         }
     }
 

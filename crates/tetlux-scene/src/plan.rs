@@ -96,7 +96,7 @@ impl Plan {
             vec![("backend", format!("{backend}: {backend_reason}")), ("order", format!("{order}: {order_reason}"))];
         if backend == Backend::Gpu {
             reasons.push(("projection", says(decided.projection, of_projection(decided.projection))));
-            if projection != CellProjection::March {
+            if !matches!(projection, CellProjection::Balanced | CellProjection::March) {
                 reasons.push(("interpolation", says(decided.interpolation, of_interpolation(decided.interpolation))));
             }
         }
@@ -143,6 +143,7 @@ fn says(choice: impl std::fmt::Display, reason: &str) -> String {
 fn of_projection(projection: CellProjection) -> &'static str {
     match projection {
         CellProjection::Auto | CellProjection::Pt => "a compute stage projects each cell once",
+        CellProjection::Balanced => "distances and scalars found at vertices, off by what vertices are rounded by",
         CellProjection::March => "every pixel walks from cell to cell, without order or blending",
         CellProjection::Vicp => "front faces are drawn, fragments find the back end",
     }

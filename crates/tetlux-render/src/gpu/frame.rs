@@ -6,8 +6,8 @@ use wgpu::util::DeviceExt;
 
 use super::Open;
 use super::picture::Picture;
-use super::pipelines::{CELL_BYTES, Pipelines};
-use super::variant::{Binding, Variant};
+use super::pipelines::Pipelines;
+use super::variant::{Binding, Geometry, Variant};
 use crate::{Job, Resources};
 
 /// Invocations a workgroup of the compute stages, as shaders/stages have them.
@@ -23,11 +23,13 @@ pub(crate) struct Batch {
 }
 
 /// Cells a batch: what one binding of projected cells, and one dispatch, can hold.
-fn batch_size(limits: &wgpu::Limits, vertices: u32) -> u32 {
+fn batch_size(limits: &wgpu::Limits, geometry: &Geometry) -> u32 {
     let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let index_bytes = geometry.indices.map_or(0, size_of_val) as u64;
     let dispatch = limits.max_compute_workgroups_per_dimension.saturating_mul(WORKGROUP);
     // The vertices of a draw call are numbered in 32 bits.
-    u32::try_from(bytes / CELL_BYTES).unwrap_or(u32::MAX).min(dispatch).clamp(1, u32::MAX / vertices)
+    let cells = u32::try_from(bytes / geometry.bytes.max(index_bytes)).unwrap_or(u32::MAX);
+    cells.min(dispatch).clamp(1, u32::MAX / geometry.indices.map_or(geometry.vertices, |i| i.len() as u32))
 }
 
 /// Makes buffers and counts them.
@@ -110,12 +112,16 @@ pub(super) fn draw(
     let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
     let scene = make.bind(&pipelines.scene, &scene);
 
-    let vertices = variant.geometry().vertices;
-    let batch = batch_size(&device.limits(), vertices).min(cells.max(1));
+    let geometry = variant.geometry();
+    let batch = batch_size(&device.limits(), &geometry).min(cells.max(1));
+    let indices = geometry.indices.map(|pattern| {
+        let all: Vec<u32> = (0..batch).flat_map(|i| pattern.iter().map(move |k| geometry.vertices * i + k)).collect();
+        make.filled("indices", bytemuck::cast_slice(&all), wgpu::BufferUsages::INDEX)
+    });
     let projected = pipelines
         .compute
         .is_some()
-        .then(|| make.empty("projected cells", u64::from(batch) * CELL_BYTES, wgpu::BufferUsages::STORAGE));
+        .then(|| make.empty("projected cells", u64::from(batch) * geometry.bytes, wgpu::BufferUsages::STORAGE));
     let picture = Picture::new(device, job.size, variant.format(), wgpu::TextureUsages::RENDER_ATTACHMENT);
     let [texture, readback] = picture.bytes();
     make.count(0, 1, texture);
@@ -152,7 +158,13 @@ pub(super) fn draw(
         pass.set_pipeline(&pipelines.draw.pipeline);
         pass.set_bind_group(0, &scene, &[]);
         pass.set_bind_group(1, &make.bind(&pipelines.draw.batch, &buffers), &[]);
-        pass.draw(0..vertices * count, 0..1);
+        match (&indices, geometry.indices) {
+            (Some(indices), Some(pattern)) => {
+                pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(0..pattern.len() as u32 * count, 0, 0..1);
+            }
+            _ => pass.draw(0..geometry.vertices * count, 0..1),
+        }
         drop(pass);
         load = wgpu::LoadOp::Load;
         remaining -= count;

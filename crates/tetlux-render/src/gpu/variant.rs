@@ -20,9 +20,22 @@ pub(crate) struct Variant {
 pub(crate) struct Geometry {
     /// The compute stage that writes the projected cells, if there is one: its module, which is its entry point too.
     pub(crate) compute: Option<&'static str>,
+    /// What that stage writes a cell.
+    pub(crate) bytes: u64,
     /// Vertices a cell.
     pub(crate) vertices: u32,
+    /// They are drawn by these indices, seen counter-clockwise from the front.
+    pub(crate) indices: Option<&'static [u32]>,
 }
+
+/// Bytes of a projected cell: `Cell` of shaders/lib/cell.wgsl.
+pub(crate) const CELL_BYTES: u64 = 80;
+
+/// Bytes of a cell of balanced cell projection: `Balanced` of shaders/lib/balanced.wgsl.
+pub(crate) const BALANCED_BYTES: u64 = 32;
+
+/// The faces of a positively oriented cell, counter-clockwise from outside.
+const FACES: [u32; 12] = [1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1];
 
 /// A buffer of bind group 0, numbered as its binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,6 +74,7 @@ impl Variant {
             Integrator::Symmetric => "weights::symmetric",
         };
         let geometry = match (self.projection, self.interpolation) {
+            (CellProjection::Balanced, _) => "geometry::balanced",
             (CellProjection::Vicp, _) => "geometry::vicp",
             (_, Interpolation::Auto | Interpolation::Ray) => "geometry::ray",
         };
@@ -80,11 +94,15 @@ impl Variant {
     }
 
     pub(crate) fn geometry(&self) -> Geometry {
-        let vertices = match (self.projection, self.interpolation) {
-            (CellProjection::Vicp, _) => 12,
-            (_, Interpolation::Auto | Interpolation::Ray) => 6,
-        };
-        Geometry { compute: Some("stages::project"), vertices }
+        let pt = Geometry { compute: Some("stages::project"), bytes: CELL_BYTES, vertices: 6, indices: None };
+        match (self.projection, self.interpolation) {
+            (CellProjection::Balanced, _) => {
+                let compute = Some("stages::balance");
+                Geometry { compute, bytes: BALANCED_BYTES, vertices: 4, indices: Some(&FACES) }
+            }
+            (CellProjection::Vicp, _) => Geometry { vertices: 12, ..pt },
+            (_, Interpolation::Auto | Interpolation::Ray) => pt,
+        }
     }
 
     /// The buffers of bind group 0 that the shaders read, ascending.
