@@ -3,7 +3,7 @@
 // Seen along the ray, that is in the oblique projection along it, a vertex has an offset from the ray, and the ray crosses
 // a triangle if the offsets of its vertices surround the origin. The sign of the area between two offsets is one
 // comparison of two products of the vertices' own numbers: all triangles at an edge agree on which side of it the ray
-// passes, so that no ray is lost between them. The areas are also the barycentric coordinates of the crossing, in space
+// passes, so that no ray is lost between them. Areas also give the coordinates of the crossing in the triangle, in space
 // and not only in the picture, wherever the vertices lie, even behind the eye.
 //
 // The twin in Rust is tetlux-render, march.
@@ -61,13 +61,54 @@ fn area(a: Corner, b: Corner) -> f32 {
     return a.offset.x * b.offset.y - a.offset.y * b.offset.x;
 }
 
-// Barycentric coordinates of the crossing of a triangle that the ray is known to cross. One that is seen edge-on is
-// crossed in its middle.
-fn crossing(a: Corner, b: Corner, c: Corner) -> vec3<f32> {
-    let areas = max(vec3<f32>(area(b, c), area(c, a), area(a, b)), vec3<f32>(0.0));
-    let sum = areas.x + areas.y + areas.z;
-    if sum > 1e-30 {
-        return areas / sum;
+// Of a triangle that the ray crosses the coordinates of the crossing along the edges from the first vertex to the others.
+// The first should be opposite the longest edge: the longer two edges of a sliver are nearly parallel, and cancel. A
+// triangle that is seen edge-on is crossed in its middle.
+fn crossing(a: Corner, b: Corner, c: Corner) -> vec2<f32> {
+    let ab = b.offset - a.offset;
+    let ac = c.offset - a.offset;
+    let whole = ab.x * ac.y - ab.y * ac.x;
+    if !(whole > 0.0) {
+        return vec2<f32>(1.0 / 3.0);
     }
-    return vec3<f32>(1.0 / 3.0);
+    let parts = vec2<f32>(ac.x * a.offset.y - ac.y * a.offset.x, ab.y * a.offset.x - ab.x * a.offset.y);
+    let along = clamp(parts / max(whole, 1e-37), vec2<f32>(0.0), vec2<f32>(1.0));
+    return vec2<f32>(along.x, min(along.y, 1.0 - along.x));
+}
+
+// Which of three vertices is opposite the longest edge, as seen: 0, 1 or 2.
+fn opposite_longest(a: Corner, b: Corner, c: Corner) -> u32 {
+    let ab = b.offset - a.offset;
+    let bc = c.offset - b.offset;
+    let ca = a.offset - c.offset;
+    let squares = vec3<f32>(dot(bc, bc), dot(ca, ca), dot(ab, ab));
+    return select(select(2u, 1u, squares.y >= squares.z), 0u, squares.x >= max(squares.y, squares.z));
+}
+
+// A place on the ray.
+struct Place {
+    // Depth from the pivot, in device units.
+    depth: f32,
+    value: Quantity,
+}
+
+// Where the ray crosses a triangle.
+fn place_of(a: Corner, b: Corner, c: Corner) -> Place {
+    var first = a;
+    var second = b;
+    var third = c;
+    let turn = opposite_longest(a, b, c);
+    if turn == 1u {
+        first = b;
+        second = c;
+        third = a;
+    } else if turn == 2u {
+        first = c;
+        second = a;
+        third = b;
+    }
+    let along = crossing(first, second, third);
+    let depth = first.depth + along.x * (second.depth - first.depth) + along.y * (third.depth - first.depth);
+    let value = (1.0 - along.x - along.y) * first.value + along.x * second.value + along.y * third.value;
+    return Place(depth, value);
 }

@@ -6,7 +6,7 @@
 import package::lib::view::{view, vertex};
 import package::lib::mesh_buffers::{points, cells};
 import package::lib::span::{Segment};
-import package::lib::walk::{Ray, Corner, ray_through, offset_from, turns, area, crossing};
+import package::lib::walk::{Ray, Corner, ray_through, offset_from, turns, area, place_of};
 import package::axes::data::{CELLWISE, scalar_of};
 import package::axes::quantity::{Quantity, quantity_of};
 import package::axes::shading::{pieces_between, shade};
@@ -33,19 +33,6 @@ const NONE = 0xffffffffu;
 fn corner_of(ray: Ray, cell: u32, name: u32) -> Corner {
     let frame = vertex(points[name].xyz).frame;
     return Corner(name, offset_from(ray, frame), frame.z, quantity_of(scalar_of(cell, name)));
-}
-
-// A place on the ray.
-struct Place {
-    depth: f32,
-    value: Quantity,
-}
-
-fn place_of(a: Corner, b: Corner, c: Corner) -> Place {
-    let w = crossing(a, b, c);
-    // From one vertex, so that digits are kept.
-    let depth = a.depth + w.y * (b.depth - a.depth) + w.z * (c.depth - a.depth);
-    return Place(depth, w.x * a.value + w.y * b.value + w.z * c.value);
 }
 
 // The triangle through which the ray leaves the cell between the triangle abc, through which it came in, and an apex: the

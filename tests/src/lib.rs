@@ -27,7 +27,7 @@ use tetlux_mesh::{Component, Field, TetMesh};
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_reference::{Caster, Ray};
 use tetlux_render::Renderer;
-use tetlux_scene::{Backend, Camera, Method, Order, Plan, Projection, Scene, View};
+use tetlux_scene::{Backend, Camera, CellProjection, Method, Order, Plan, Projection, Scene, View};
 
 pub use closed_form::{Convex, Judged, composite, depth_of, judge};
 pub use random::Random;
@@ -39,6 +39,10 @@ pub enum Way {
     GpuNone,
     /// wgpu, cells by centroid.
     GpuCentroid,
+    /// wgpu, front faces by centroid.
+    GpuVicp,
+    /// wgpu, every pixel from cell to cell.
+    GpuMarch,
     /// The processor, cells by centroid.
     CpuCentroid,
     /// The processor, segments sorted in every pixel.
@@ -47,16 +51,23 @@ pub enum Way {
 
 impl Way {
     /// Every way there is.
-    pub const ALL: [Way; 4] = [Way::GpuNone, Way::GpuCentroid, Way::CpuCentroid, Way::CpuPixel];
+    pub const ALL: [Way; 6] =
+        [Way::GpuNone, Way::GpuCentroid, Way::GpuVicp, Way::GpuMarch, Way::CpuCentroid, Way::CpuPixel];
 
     fn method(self) -> Method {
+        let projection = match self {
+            Way::GpuVicp => CellProjection::Vicp,
+            Way::GpuMarch => CellProjection::March,
+            _ => CellProjection::Auto,
+        };
         let (backend, order) = match self {
             Way::GpuNone => (Backend::Gpu, Order::None),
-            Way::GpuCentroid => (Backend::Gpu, Order::Centroid),
+            Way::GpuCentroid | Way::GpuVicp => (Backend::Gpu, Order::Centroid),
+            Way::GpuMarch => (Backend::Gpu, Order::None),
             Way::CpuCentroid => (Backend::Cpu, Order::Centroid),
             Way::CpuPixel => (Backend::Cpu, Order::Pixel),
         };
-        Method { backend, order, ..Method::default() }
+        Method { backend, order, projection, ..Method::default() }
     }
 }
 

@@ -2,6 +2,8 @@
 //!
 //! Areas and crossings are the twins of shaders/lib/walk.wgsl, which explains them.
 
+use std::cmp::Ordering;
+
 use glam::{Vec2, Vec2Swizzles, Vec3};
 use rayon::prelude::*;
 use tetlux_mesh::{NONE, TetMesh};
@@ -112,8 +114,7 @@ impl Face {
         if !(turns(a, b) && turns(b, c) && turns(c, a)) {
             return None;
         }
-        let w = crossing(a, b, c);
-        Some(a.depth + w.y * (b.depth - a.depth) + w.z * (c.depth - a.depth))
+        Some(depth_of(a, b, c))
     }
 }
 
@@ -217,14 +218,33 @@ fn turns(a: &Corner, b: &Corner) -> bool {
     }
 }
 
-fn area(a: &Corner, b: &Corner) -> f32 {
-    a.offset.x * b.offset.y - a.offset.y * b.offset.x
+fn crossing(a: &Corner, b: &Corner, c: &Corner) -> Vec2 {
+    let (ab, ac) = (b.offset - a.offset, c.offset - a.offset);
+    let whole = ab.x * ac.y - ab.y * ac.x;
+    if whole.partial_cmp(&0.0) != Some(Ordering::Greater) {
+        return Vec2::splat(1.0 / 3.0);
+    }
+    let parts = Vec2::new(ac.x * a.offset.y - ac.y * a.offset.x, ab.y * a.offset.x - ab.x * a.offset.y);
+    let along = (parts / whole.max(1e-37)).clamp(Vec2::ZERO, Vec2::ONE);
+    Vec2::new(along.x, along.y.min(1.0 - along.x))
 }
 
-fn crossing(a: &Corner, b: &Corner, c: &Corner) -> Vec3 {
-    let areas = Vec3::new(area(b, c), area(c, a), area(a, b)).max(Vec3::ZERO);
-    let sum = areas.element_sum();
-    if sum > 1e-30 { areas / sum } else { Vec3::splat(1.0 / 3.0) }
+fn opposite_longest(a: &Corner, b: &Corner, c: &Corner) -> usize {
+    let squares = [c.offset - b.offset, a.offset - c.offset, b.offset - a.offset].map(Vec2::length_squared);
+    if squares[0] >= squares[1].max(squares[2]) {
+        0
+    } else if squares[1] >= squares[2] {
+        1
+    } else {
+        2
+    }
+}
+
+/// The depth of the shader's `place_of`.
+fn depth_of(a: &Corner, b: &Corner, c: &Corner) -> f32 {
+    let [first, second, third] = [[a, b, c], [b, c, a], [c, a, b]][opposite_longest(a, b, c)];
+    let along = crossing(first, second, third);
+    first.depth + along.x * (second.depth - first.depth) + along.y * (third.depth - first.depth)
 }
 
 #[cfg(test)]

@@ -21,10 +21,13 @@ fn a_ray_passes_an_edge_on_one_side() {
 fn crossings_are_where_the_offsets_balance() {
     // The origin is 1/2 a + 1/4 b + 1/4 c.
     let [a, b, c] = [corner(0, -1.0, 0.0), corner(1, 1.0, -2.0), corner(2, 1.0, 2.0)];
-    assert_eq!(crossing(&a, &b, &c), Vec3::new(0.5, 0.25, 0.25));
+    assert_eq!(crossing(&a, &b, &c), Vec2::splat(0.25));
+    assert_eq!(opposite_longest(&a, &b, &c), 0);
+    // Depths are linear in the offsets: at the origin none, from whichever vertex.
+    assert_eq!([depth_of(&a, &b, &c), depth_of(&b, &c, &a), depth_of(&c, &a, &b)], [0.0; 3]);
     // Seen edge-on there is no balance to find.
     let flat = corner(3, 3.0, 0.0);
-    assert_eq!(crossing(&a, &flat, &a), Vec3::splat(1.0 / 3.0));
+    assert_eq!(crossing(&a, &flat, &a), Vec2::splat(1.0 / 3.0));
 }
 
 #[test]
