@@ -90,7 +90,7 @@ impl Face {
         let names = device.cells[cell as usize];
         let negative = names[0] & NEGATIVE != 0;
         let mut others = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][k].map(|i| names[i] & !NEGATIVE);
-        if (k % 2 == 0) != negative {
+        if k.is_multiple_of(2) != negative {
             others.swap(1, 2);
         }
         let vertices: [Vertex; 3] = others.map(|name| {
