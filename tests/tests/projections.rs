@@ -168,3 +168,18 @@ fn tuples_make_the_picture_up_to_the_rounding_of_vertices() {
         }
     }
 }
+
+#[test]
+fn a_march_stops_where_the_rest_is_within_its_share_of_the_error() {
+    let (what, mesh, inside) = meshes().remove(2);
+    let dense = white(&[[0.0, 12.0]]);
+    for camera in cameras(&mesh, inside) {
+        let scene = scene(&mesh, dense.clone(), camera, SIZE);
+        let exact = draw(&mesh, &scene, Method { max_error: 1e-9, ..by(CellProjection::March) }).image;
+        let stopped = draw(&mesh, &scene, Method { max_error: 0.64, ..by(CellProjection::March) }).image;
+        let left: Vec<f32> = exact.pixels().iter().zip(stopped.pixels()).map(|(a, b)| a[3] - b[3]).collect();
+        // A sixty-fourth of the error allowed.
+        assert!(left.iter().all(|&rest| (0.0..=0.0101).contains(&rest)), "{what}, {:?}", camera.projection);
+        assert!(left.iter().any(|&rest| rest > 1e-4), "{what}, {:?}: nothing is left out", camera.projection);
+    }
+}
