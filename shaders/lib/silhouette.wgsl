@@ -90,17 +90,53 @@ fn silhouette_corner(cell: Cell, v: array<Vertex, 4>, k: u32) -> vec2<f32> {
     if abs(area) < NARROWEST * extent || shortest < SHORTEST {
         return oblong(v, axis, extent, k);
     }
-    // Both edges at the corner move outwards by the margin.
     let i = min(k, o.count - 1u);
-    let at = o.corners[i];
-    let e = normalize(at - o.corners[(i + o.count - 1u) % o.count]);
-    let f = normalize(o.corners[(i + 1u) % o.count] - at);
-    let outward = MARGIN * sign(area);
+    let before = o.corners[(i + o.count - 1u) % o.count];
+    return moved_out(before, o.corners[i], o.corners[(i + 1u) % o.count], MARGIN * sign(area));
+}
+
+// The corner `at` between two others, both its edges moved outwards; `outward` has the sign of the outline's area.
+fn moved_out(before: vec2<f32>, at: vec2<f32>, after: vec2<f32>, outward: f32) -> vec2<f32> {
+    let e = normalize(at - before);
+    let f = normalize(after - at);
     if dot(e, f) > 0.0 {
         let normals = vec2<f32>(e.y + f.y, -e.x - f.x);
         return at + normals * (outward / (1.0 + dot(e, f)));
     }
     return at + (e - f) * (outward / cross2(e, f));
+}
+
+// Corner k, 0 to 2, of what is drawn of the face opposite vertex `face` of a cell that is not DEEP: the face with the
+// margin or, where its corners cannot be moved one by one, a right triangle round a rectangle that holds it.
+fn face_corner(v: array<Vertex, 4>, face: u32, k: u32) -> vec2<f32> {
+    let a = v[select(0u, 1u, face == 0u)].pixel;
+    let b = v[select(1u, 2u, face <= 1u)].pixel;
+    let c = v[select(2u, 3u, face <= 2u)].pixel;
+    var axis = b - a;
+    axis = select(axis, c - a, dot(c - a, c - a) > dot(axis, axis));
+    axis = select(axis, c - b, dot(c - b, c - b) > dot(axis, axis));
+    let extent = length(axis);
+    let corner = vec2<f32>(f32(k == 1u), f32(k == 2u)) * 2.0;
+    if extent > WIDEST {
+        let limit = view.size * 0.5 + 1.0;
+        let low = clamp(min(a, min(b, c)) - MARGIN, -limit, limit);
+        let high = clamp(max(a, max(b, c)) + MARGIN, -limit, limit);
+        return mix(low, high, corner);
+    }
+    let area = cross2(b - a, c - a);
+    let shortest = min(distance(a, b), min(distance(b, c), distance(c, a)));
+    if abs(area) < NARROWEST * extent || shortest < SHORTEST {
+        let along = select(vec2<f32>(1.0, 0.0), axis / max(extent, 1e-20), extent > 1e-3);
+        let across = vec2<f32>(-along.y, along.x);
+        let p = vec2<f32>(dot(along, b - a), dot(across, b - a));
+        let q = vec2<f32>(dot(along, c - a), dot(across, c - a));
+        let low = min(min(p, q), vec2<f32>(0.0)) - MARGIN;
+        let high = max(max(p, q), vec2<f32>(0.0)) + MARGIN;
+        let place = mix(low, high, corner);
+        return a + along * place.x + across * place.y;
+    }
+    let corners = array<vec2<f32>, 3>(a, b, c);
+    return moved_out(corners[(k + 2u) % 3u], corners[k], corners[(k + 1u) % 3u], MARGIN * sign(area));
 }
 
 fn cross2(a: vec2<f32>, b: vec2<f32>) -> f32 {

@@ -53,7 +53,7 @@ fn linear_at(linear: Linear, depth: f32, across: vec2<f32>, direction: vec3<f32>
     return max(linear[3] + depth * (aside - scaled * along), vec4<f32>(0.0));
 }
 
-// What geometry::ray hands to fragments: no more than this quantity needs, for every value costs time.
+// What lib::flat hands to fragments: no more than this quantity needs, for every value costs time.
 struct RayFragment {
     @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) plane_0: vec4<f32>,
@@ -63,8 +63,9 @@ struct RayFragment {
     @location(4) @interpolate(flat) origins: vec4<f32>,
     // Range of w, and the depth of the reference vertex.
     @location(5) @interpolate(flat) range_depth: vec3<f32>,
-    // The pieces of the transfer function that the cell's scalars meet, and the cell's place in the order.
-    @location(6) @interpolate(flat) pieces_entry: vec3<u32>,
+    // The pieces of the transfer function that the cell's scalars meet, the cell's place in the order, and the face that
+    // is drawn, if it is one.
+    @location(6) @interpolate(flat) pieces_entry: vec4<u32>,
     @location(7) @interpolate(flat) linear_0: vec4<f32>,
     @location(8) @interpolate(flat) linear_1: vec4<f32>,
     @location(9) @interpolate(flat) linear_2: vec4<f32>,

@@ -27,16 +27,16 @@ macro_rules! modules {
 
 /// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
 pub const MODULES: &[(&str, &str)] = modules! {
-    lib { cell lookup mesh mesh_buffers plane published ray segment silhouette span symmetric thick transfer view volume }
+    lib { balanced cell flat lookup mesh mesh_buffers plane published ray segment silhouette span symmetric thick transfer view volume walk }
     data { cell point }
-    geometry { ray thick }
+    geometry { balanced ray thick vicp }
     interpolation { perspective screen_linear }
     output { dither plain straight }
     quantity { color scalar }
     shading { post_clip post_exact preint preint_log preint_q vertex }
     source { computed stored }
     weights { average direct linear psi q symmetric }
-    stages { decompose draw group project }
+    stages { balance decompose draw group march project }
 };
 
 /// An axis and the module that stands for it.

@@ -28,7 +28,7 @@ use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_reference::{Caster, Ray};
 use tetlux_render::{Model, Renderer};
-use tetlux_scene::{Backend, Camera, Method, Order, Plan, Projection, Scene, View};
+use tetlux_scene::{Backend, Camera, CellProjection, Method, Order, Plan, Projection, Scene, View};
 
 pub use closed_form::{Convex, Judged, composite, depth_of, judge};
 pub use random::Random;
@@ -40,6 +40,10 @@ pub enum Way {
     GpuNone,
     /// wgpu, cells by centroid.
     GpuCentroid,
+    /// wgpu, front faces by centroid.
+    GpuVicp,
+    /// wgpu, every pixel from cell to cell.
+    GpuMarch,
     /// The processor, cells by centroid.
     CpuCentroid,
     /// wgpu, in exact order.
@@ -52,19 +56,33 @@ pub enum Way {
 
 impl Way {
     /// Every way there is.
-    pub const ALL: [Way; 6] =
-        [Way::GpuNone, Way::GpuCentroid, Way::CpuCentroid, Way::GpuExact, Way::CpuExact, Way::CpuPixel];
+    pub const ALL: [Way; 8] = [
+        Way::GpuNone,
+        Way::GpuCentroid,
+        Way::GpuVicp,
+        Way::GpuMarch,
+        Way::GpuExact,
+        Way::CpuCentroid,
+        Way::CpuExact,
+        Way::CpuPixel,
+    ];
 
     fn method(self) -> Method {
+        let projection = match self {
+            Way::GpuVicp => CellProjection::Vicp,
+            Way::GpuMarch => CellProjection::March,
+            _ => CellProjection::Auto,
+        };
         let (backend, order) = match self {
             Way::GpuNone => (Backend::Gpu, Order::None),
-            Way::GpuCentroid => (Backend::Gpu, Order::Centroid),
+            Way::GpuCentroid | Way::GpuVicp => (Backend::Gpu, Order::Centroid),
+            Way::GpuMarch => (Backend::Gpu, Order::None),
             Way::CpuCentroid => (Backend::Cpu, Order::Centroid),
             Way::GpuExact => (Backend::Gpu, Order::Exact),
             Way::CpuExact => (Backend::Cpu, Order::Exact),
             Way::CpuPixel => (Backend::Cpu, Order::Pixel),
         };
-        Method { backend, order, ..Method::default() }
+        Method { backend, order, projection, ..Method::default() }
     }
 }
 

@@ -54,10 +54,10 @@ pub(crate) struct SceneArgs {
     /// auto, gpu or cpu
     #[arg(long, value_name = "NAME")]
     pub(crate) backend: Option<Backend>,
-    /// auto, none, centroid or pixel
+    /// auto, none, centroid, power, mpvo, mpvonc, exact or pixel
     #[arg(long, value_name = "NAME")]
     pub(crate) order: Option<Order>,
-    /// How cells become fragments: auto, pt or gator
+    /// How cells become fragments: auto, pt, gator, vicp, balanced or march
     #[arg(long, value_name = "NAME")]
     pub(crate) projection: Option<CellProjection>,
     /// How fragments come by their segments: auto, ray, perspective or screen-linear

@@ -1,26 +1,11 @@
-//! A tetrahedron as a ray sees it: the twin of shaders/lib/view.wgsl and shaders/lib/cell.wgsl, function by function.
+//! A tetrahedron as a ray sees it: the twin of shaders/lib/cell.wgsl, function by function.
 //!
 //! The shaders explain the method. What differs here: the orthographic switch is an argument, and a segment also says
 //! how deep it lies, for sorting.
 
 use glam::{Vec2, Vec3, Vec4};
 
-use crate::device_view::DeviceView;
-
-/// What the shaders know of the view.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lens {
-    pub(crate) view: DeviceView,
-    pub(crate) orthographic: bool,
-}
-
-/// A vertex in eye space and in pixels.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Vertex {
-    pub(crate) frame: Vec3,
-    pub(crate) eye: Vec3,
-    pub(crate) pixel: Vec2,
-}
+use crate::lens::{Lens, NUDGE, Vertex};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -60,23 +45,8 @@ pub(crate) struct Segment {
 const DEEP_RATIO: f32 = 4.0;
 const STEEPEST: f32 = 1e20;
 const EDGE_ON: f32 = 1e-6;
-const NUDGE: Vec2 = Vec2::new(7.3e-5, 4.1e-5);
 
 impl Lens {
-    pub(crate) fn vertex(&self, position: Vec3) -> Vertex {
-        let view = &self.view;
-        let p = (position - DeviceView::axis(view.pivot_high)) - DeviceView::axis(view.pivot_low);
-        let rows = [view.right, view.down, view.forward];
-        let frame = Vec3::from(rows.map(|row| DeviceView::axis(row).dot(p)));
-        let eye = frame + Vec3::from(rows.map(|row| row[3]));
-        Vertex { frame, eye, pixel: self.pixel_of(eye) }
-    }
-
-    pub(crate) fn pixel_of(&self, eye: Vec3) -> Vec2 {
-        let scale = if self.orthographic { 1.0 } else { eye.z.max(self.view.near) };
-        eye.truncate() / (scale * self.view.pixel)
-    }
-
     fn cell_kind(&self, z: [f32; 4]) -> Kind {
         let (nearest, farthest) = bounds(z);
         if farthest <= self.view.near {

@@ -1,7 +1,6 @@
 //! The view as devices have it.
 
 use glam::DVec3;
-#[cfg(test)]
 use glam::Vec3;
 use tetlux_mesh::TetMesh;
 use tetlux_scene::View;
@@ -44,7 +43,6 @@ impl DeviceView {
         }
     }
 
-    #[cfg(test)]
     pub(crate) fn axis(row: [f32; 4]) -> Vec3 {
         Vec3::new(row[0], row[1], row[2])
     }

@@ -1,6 +1,7 @@
 //! The wgpu back end: cells projected in a compute stage, drawn back to front, blended by the fixed-function hardware.
 
 pub(crate) mod frame;
+pub(crate) mod march;
 mod picture;
 pub(crate) mod pipelines;
 mod stretch;
@@ -12,8 +13,10 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use tetlux_scene::{Device, Plan};
 
+use crate::march::March;
 use crate::stage::Stages;
 use crate::{Job, RenderError, Resources};
+use march::Marcher;
 use pipelines::Pipelines;
 pub(crate) use stretch::LARGEST_GROUP;
 use variant::Variant;
@@ -24,8 +27,12 @@ pub(crate) struct Gpu {
     adapter: wgpu::Adapter,
     device: Device,
     open: OnceLock<Open>,
-    pipelines: Mutex<HashMap<Variant, Arc<Pipelines>>>,
+    pipelines: Made<Pipelines>,
+    marchers: Made<Marcher>,
 }
+
+/// What has been made for each variant of the shaders.
+type Made<T> = Mutex<HashMap<Variant, Arc<T>>>;
 
 #[derive(Debug)]
 struct Open {
@@ -58,7 +65,7 @@ impl Gpu {
             blends_f32: adapter.features().contains(wgpu::Features::FLOAT32_BLENDABLE),
             norm16: adapter.features().contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM),
         };
-        Some(Gpu { adapter, device, open: OnceLock::new(), pipelines: Mutex::default() })
+        Some(Gpu { adapter, device, open: OnceLock::new(), pipelines: Mutex::default(), marchers: Mutex::default() })
     }
 
     pub(crate) fn device(&self) -> &Device {
@@ -80,25 +87,22 @@ impl Gpu {
             }
         };
         let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty());
-        let pipelines = self.pipelines(open, variant, stages)?;
-        let sorted = job.groups.iter().any(|group| group.end - group.start <= LARGEST_GROUP);
-        let groups = if sorted { Some(self.pipelines(open, variant.of_groups(), stages)?) } else { None };
         self.check_limits(open, job)?;
-        let draw = || self.checked(open, || frame::draw(open, &variant, &pipelines, groups.as_deref(), job));
-        stages.run("draw", draw)?.map_err(|e| self.failed(e))
-    }
-
-    /// The pipelines of a variant, made when first asked for.
-    fn pipelines(&self, open: &Open, variant: Variant, stages: &mut Stages) -> Result<Arc<Pipelines>, RenderError> {
-        // A panic elsewhere cannot have left the map half changed.
-        let known = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).get(&variant).cloned();
-        if let Some(pipelines) = known {
-            return Ok(pipelines);
-        }
-        let made = stages.run("pipelines", || self.checked(open, || Pipelines::new(&open.device, variant)))??;
-        let made = Arc::new(made);
-        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).insert(variant, made.clone());
-        Ok(made)
+        let pipelines = |variant, stages: &mut Stages| {
+            made(&self.pipelines, variant, stages, || self.checked(open, || Pipelines::new(&open.device, variant)))
+        };
+        let drawn = if let Some(march) = &job.march {
+            let make = || self.checked(open, || Marcher::new(&open.device, variant));
+            let marcher = made(&self.marchers, variant, stages, make)?;
+            stages.run("draw", || self.checked(open, || marcher.draw(open, &variant, job, march)))?
+        } else {
+            let cells = pipelines(variant, stages)?;
+            let sorted = job.groups.iter().any(|group| group.end - group.start <= LARGEST_GROUP);
+            let groups = if sorted { Some(pipelines(variant.of_groups(), stages)?) } else { None };
+            let draw = || frame::draw(open, &variant, &cells, groups.as_deref(), job);
+            stages.run("draw", || self.checked(open, draw))?
+        };
+        drawn.map_err(|e| self.failed(e))
     }
 
     fn open(&self) -> Result<Open, RenderError> {
@@ -140,6 +144,7 @@ impl Gpu {
             ("the mesh's cells", size_of_val(&job.mesh.cells[..]) as u64, "bytes", binding),
             ("the transfer function", size_of_val(job.pieces) as u64, "bytes", binding),
             ("the order of the cells", size_of_val(job.order) as u64, "bytes", binding),
+            ("the faces through which rays come in", job.march.as_ref().map_or(0, March::largest), "bytes", binding),
             ("the picture", u64::from(job.size[0].max(job.size[1])), "pixels a side", side),
             ("the picture", pixels * 16 + 256 * u64::from(job.size[1]), "bytes", limits.max_buffer_size),
         ] {
@@ -149,4 +154,20 @@ impl Gpu {
         }
         Ok(())
     }
+}
+
+/// What `make` makes for a variant, once.
+fn made<T>(
+    all: &Made<T>,
+    variant: Variant,
+    stages: &mut Stages,
+    make: impl FnOnce() -> Result<Result<T, RenderError>, RenderError>,
+) -> Result<Arc<T>, RenderError> {
+    // A panic elsewhere cannot have left the map half changed.
+    if let Some(known) = all.lock().unwrap_or_else(PoisonError::into_inner).get(&variant) {
+        return Ok(known.clone());
+    }
+    let made = Arc::new(stages.run("pipelines", make)??);
+    all.lock().unwrap_or_else(PoisonError::into_inner).insert(variant, made.clone());
+    Ok(made)
 }

@@ -6,16 +6,17 @@ use naga::TypeInner;
 
 use crate::device_view::DeviceView;
 use crate::gpu::frame::Batch;
-use crate::gpu::pipelines::CELL_BYTES;
+use crate::gpu::march::Limits;
 use crate::gpu::tables::Lookup;
+use crate::gpu::variant::{BALANCED_BYTES, CELL_BYTES};
 
 /// (member, offset) of a structure of the drawing stage, and its size.
 fn layout(structure: &str) -> (Vec<(String, usize)>, usize) {
     layout_in("stages::draw", structure)
 }
 
-fn layout_in(module: &str, structure: &str) -> (Vec<(String, usize)>, usize) {
-    let source = tetlux_shaders::compose(module, tetlux_shaders::DEFAULTS).unwrap();
+fn layout_in(stage: &str, structure: &str) -> (Vec<(String, usize)>, usize) {
+    let source = tetlux_shaders::compose(stage, tetlux_shaders::DEFAULTS).unwrap();
     let module = naga::front::wgsl::parse_str(&source).unwrap();
     let found = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(structure));
     let TypeInner::Struct { members, span } = &found.unwrap().1.inner else { panic!("{structure} is no structure") };
@@ -64,4 +65,24 @@ fn the_decoding_of_tables() {
         ("length", offset_of!(Lookup, length)),
     ]);
     assert_eq!(layout_in("lib::lookup", "Lookup"), (ours, size_of::<Lookup>()));
+}
+
+#[test]
+fn the_limits_of_a_march() {
+    let ours = named([
+        ("opaque", offset_of!(Limits, opaque)),
+        ("steps", offset_of!(Limits, steps)),
+        ("unused", offset_of!(Limits, unused)),
+    ]);
+    assert_eq!(layout_in("stages::march", "March"), (ours, size_of::<Limits>()));
+}
+
+/// Position and scalar of the four vertices, which are pulled from the mesh; the face opposite goes without saying.
+const PULLED_FLOATS: u64 = 4 * 4;
+
+#[test]
+fn a_balanced_cell_moves_at_most_as_much_as_published() {
+    assert_eq!(layout_in("stages::balance", "Balanced").1 as u64, BALANCED_BYTES);
+    // Moreland and Angel 2004, section 3.1: seven floats for each of four vertices, drawn by index.
+    const { assert!(PULLED_FLOATS + BALANCED_BYTES / 4 <= 28) }
 }

@@ -41,6 +41,8 @@ mod eye_space;
 mod gpu;
 #[cfg(test)]
 mod layout_tests;
+mod lens;
+mod march;
 mod model;
 mod order;
 mod resources;
@@ -61,12 +63,14 @@ use tetlux_image::Image;
 use tetlux_mesh::ScalarField;
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::{OrderReport, Orderer};
-use tetlux_scene::{Backend, Classification, Device, Integrator, Plan, Scene, TablePrecision};
+use tetlux_scene::{Backend, CellProjection, Classification, Device, Integrator, Plan, Scene, TablePrecision};
 use tetlux_tables::{Table, TableKind, TableSpec};
 
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
+use crate::lens::Lens;
+use crate::march::March;
 
 /// A picture and the time it took.
 #[derive(Debug)]
@@ -105,9 +109,16 @@ struct Job<'a> {
     table_precision: TablePrecision,
     /// Factor from device lengths to those of the tables.
     table_length: f32,
+    /// What a march needs instead of the order.
+    march: Option<March>,
+    /// Alpha beyond which a pixel is as good as opaque.
+    opaque: f32,
     /// Width and height in pixels.
     size: [u32; 2],
 }
+
+/// The share of the error allowed that goes to what is never seen behind a nearly opaque pixel.
+const OPAQUE_SHARE: f64 = 1.0 / 64.0;
 
 /// Renders by plan; holds the graphics device once one has been used, and the last order.
 #[derive(Debug)]
@@ -179,10 +190,13 @@ impl Renderer {
         } else {
             (std::mem::take(&mut order.cells), Vec::new())
         };
+        let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
+        let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
+            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
         let job = Job {
             mesh: &device_mesh,
             scalar: &scene.scalar,
-            view: DeviceView::new(view, mesh, &device_mesh),
+            view: lens.view,
             eye: EyeSpace::new(view, mesh, &device_mesh),
             pieces: &pieces,
             weights,
@@ -193,6 +207,8 @@ impl Renderer {
             table_precision: plan.table_precision,
             table_length: (1.0 / (device_mesh.scale * table_unit(&tables))) as f32,
             tables: &tables,
+            march,
+            opaque: (1.0 - OPAQUE_SHARE * scene.method.max_error.clamp(0.0, 1.0)) as f32,
             size: view.size,
         };
         let (pixels, resources) = match plan.backend {

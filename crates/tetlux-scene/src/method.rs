@@ -77,6 +77,15 @@ named! {
         Pt,
         /// The same in the vertex stage, one instance a tetrahedron: Wylie et al. 2002.
         Gator,
+        /// View-independent cell projection: front faces drawn, the back end found in the fragment: Weiler, Kraus, Merz
+        /// and Ertl 2003.
+        Vicp,
+        /// Distances to the faces and scalars there, found at the vertices and interpolated: Moreland and Angel 2004. Off by
+        /// what rasterisers round vertices by, 1/256 of a pixel.
+        Balanced,
+        /// Every pixel walks along its ray from cell to cell; needs no order and no blending: Garrity 1990; Weiler, Kraus,
+        /// Merz and Ertl 2003.
+        March,
     }
 }
 
@@ -230,6 +239,24 @@ impl Method {
     /// Why this combination cannot be, whatever the scene and the adapter; `None` if it can. `Auto` agrees with
     /// everything.
     pub fn refusal(&self) -> Option<String> {
+        if self.projection == CellProjection::March
+            && let Some(reason) = self.refusal_of_march()
+        {
+            return Some(reason);
+        }
+        if self.projection == CellProjection::Balanced
+            && let Some(reason) = self.refusal_of_balanced()
+        {
+            return Some(reason);
+        }
+        if self.projection == CellProjection::Vicp
+            && !matches!(self.interpolation, Interpolation::Auto | Interpolation::Ray)
+        {
+            return Some(format!(
+                "projection \"vicp\" finds each end of a segment on the ray: leave out --interpolation {}",
+                self.interpolation
+            ));
+        }
         if self.backend == Backend::Gpu && self.order == Order::Pixel {
             return Some(
                 "order \"pixel\" sorts every pixel's segments, which only the CPU back end does: use --backend cpu, \
@@ -279,6 +306,64 @@ impl Method {
         None
     }
 
+    fn refusal_of_march(&self) -> Option<String> {
+        if !matches!(self.order, Order::Auto | Order::None) {
+            return Some(format!(
+                "projection \"march\" walks from cell to cell and needs no order: leave out --order {}",
+                self.order
+            ));
+        }
+        if self.interpolation != Interpolation::Auto {
+            return Some(format!(
+                "projection \"march\" draws no fragments that would come by their segments: leave out \
+                 --interpolation {}",
+                self.interpolation
+            ));
+        }
+        if self.integrator.uses_table() {
+            return Some(format!(
+                "projection \"march\" binds no tables: use average, linear, direct or symmetric instead of --integrator {}",
+                self.integrator
+            ));
+        }
+        if self.classification == Classification::PostClip {
+            return Some(
+                "projection \"march\" meets each cell once, and classification \"post-clip\" draws it once a piece: use \
+                 post-exact"
+                    .into(),
+            );
+        }
+        if !matches!(self.target, Target::Auto | Target::Rgba32f) {
+            return Some(format!(
+                "projection \"march\" composites in single precision and blends into nothing: leave out --target {}",
+                self.target
+            ));
+        }
+        None
+    }
+
+    fn refusal_of_balanced(&self) -> Option<String> {
+        if self.interpolation != Interpolation::Auto {
+            return Some(format!(
+                "projection \"balanced\" interpolates segments in its own way: leave out --interpolation {}",
+                self.interpolation
+            ));
+        }
+        if self.classification == Classification::Vertex {
+            return Some(
+                "projection \"balanced\" carries one scalar a face, and colours classified at the vertices are four \
+                 numbers: use --projection pt with --classification vertex"
+                    .into(),
+            );
+        }
+        None
+    }
+
+    /// Whether the march can be the projection.
+    pub(crate) fn marches(&self) -> bool {
+        matches!(self.projection, CellProjection::Auto | CellProjection::March) && self.refusal_of_march().is_none()
+    }
+
     /// The first choice that only a graphics adapter's back end can follow, in words.
     pub(crate) fn gpu_only(&self) -> Option<String> {
         if !matches!(self.projection, CellProjection::Auto) {
@@ -306,13 +391,10 @@ impl Method {
     /// scene.
     pub(crate) fn decided(&self) -> Method {
         let mut method = *self;
-        if method.projection == CellProjection::Auto {
-            method.projection = CellProjection::Pt;
-        }
         if method.interpolation == Interpolation::Auto {
             method.interpolation = match method.projection {
                 CellProjection::Gator => Interpolation::Perspective,
-                CellProjection::Auto | CellProjection::Pt => Interpolation::Ray,
+                _ => Interpolation::Ray,
             };
         }
         if method.integrator == Integrator::Auto {
@@ -339,6 +421,35 @@ pub fn parse_name<'de, T: Deserialize<'de>>(name: &'de str) -> Result<T, Unknown
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_march_is_refused_what_it_does_not_do() {
+        let march = Method { projection: CellProjection::March, ..Method::default() };
+        assert_eq!(march.refusal(), None);
+        assert_eq!(Method { order: Order::None, target: Target::Rgba32f, ..march }.refusal(), None);
+        for (method, named) in [
+            (Method { order: Order::Centroid, ..march }, "needs no order: leave out --order centroid"),
+            (Method { target: Target::Rgba8, ..march }, "--target rgba8"),
+            (Method { interpolation: Interpolation::Ray, ..march }, "--interpolation ray"),
+            (Method { backend: Backend::Cpu, ..march }, "--backend gpu"),
+        ] {
+            let refusal = method.refusal().unwrap();
+            assert!(refusal.contains("march") && refusal.contains(named), "{refusal}");
+        }
+    }
+
+    #[test]
+    fn balanced_is_refused_what_it_does_not_do() {
+        let balanced = Method { projection: CellProjection::Balanced, ..Method::default() };
+        assert_eq!(balanced.refusal(), None);
+        for (method, named) in [
+            (Method { classification: Classification::Vertex, ..balanced }, "--classification vertex"),
+            (Method { interpolation: Interpolation::Ray, ..balanced }, "--interpolation ray"),
+        ] {
+            let refusal = method.refusal().unwrap();
+            assert!(refusal.contains("balanced") && refusal.contains(named), "{refusal}");
+        }
+    }
 
     #[test]
     fn every_value_is_read_back_from_its_name() {

@@ -82,10 +82,11 @@ impl Plan {
             return Err(SceneError::Method(reason));
         }
         let (backend, backend_reason) = choose_backend(&scene.method, device)?;
-        let (order, order_reason) = choose_order(scene);
-        let (target, target_reason) = choose_target(scene.method.target, device);
+        let projection = choose_projection(&scene.method, backend, device);
+        let (order, order_reason) = choose_order(scene, projection);
+        let (target, target_reason) = choose_target(scene.method.target, projection, device);
         let (table_precision, fallback) = choose_table_precision(scene.method.table_precision, device);
-        let decided = Method { backend, order, table_precision, target, ..scene.method.decided() };
+        let decided = Method { backend, order, projection, table_precision, target, ..scene.method.decided() };
         let tables = backend == Backend::Gpu && decided.integrator.uses_table();
         warnings.extend(fallback.filter(|_| tables));
         warnings.extend(doubts_of(order).map(String::from));
@@ -100,7 +101,9 @@ impl Plan {
             vec![("backend", format!("{backend}: {backend_reason}")), ("order", format!("{order}: {order_reason}"))];
         if backend == Backend::Gpu {
             reasons.push(("projection", says(decided.projection, of_projection)));
-            reasons.push(("interpolation", says(decided.interpolation, of_interpolation)));
+            if !matches!(projection, CellProjection::Balanced | CellProjection::March) {
+                reasons.push(("interpolation", says(decided.interpolation, of_interpolation)));
+            }
         }
         reasons.push(("integrator", says(decided.integrator, of_integrator)));
         if tables {
@@ -169,12 +172,13 @@ fn drawable(scene: &Scene) -> Result<(), SceneError> {
 }
 
 fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, String), SceneError> {
-    // Formats that every device blends.
-    let blends = |d: &Device| d.blends_f32 || method.target != Target::Rgba32f;
+    // The march blends nothing, and other formats every device blends.
+    let marches = method.marches();
+    let blends = |d: &Device| d.blends_f32 || marches || method.target != Target::Rgba32f;
     let cannot_blend = |d: &Device| {
         SceneError::Method(format!(
-            "{} cannot blend 32-bit floating-point targets: use --backend cpu, or --target rgba16f, which is off by up \
-             to 5e-2",
+            "{} cannot blend 32-bit floating-point targets: use --projection march, --backend cpu, or --target rgba16f, \
+             which is off by up to 5e-2",
             d.name
         ))
     };
@@ -197,7 +201,7 @@ fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, 
             None if d.software => {
                 Ok((Backend::Cpu, format!("{} is this processor too, and the direct way is exact and faster", d.name)))
             }
-            None if !d.blends_f32 => {
+            None if !d.blends_f32 && !marches => {
                 Ok((Backend::Cpu, format!("{} cannot blend 32-bit floating-point targets", d.name)))
             }
             None => Ok((Backend::Gpu, d.name.clone())),
@@ -221,8 +225,24 @@ fn doubts_of(order: Order) -> Option<&'static str> {
     }
 }
 
+/// The march where single precision cannot be blended, unless another is asked for.
+fn choose_projection(method: &Method, backend: Backend, device: Option<&Device>) -> CellProjection {
+    match method.projection {
+        CellProjection::Auto
+            if backend == Backend::Gpu && device.is_some_and(|d| !d.blends_f32) && method.marches() =>
+        {
+            CellProjection::March
+        }
+        CellProjection::Auto => CellProjection::Pt,
+        asked => asked,
+    }
+}
+
 /// The best that the adapter can blend, unless one is asked for.
-fn choose_target(asked: Target, device: Option<&Device>) -> (Target, String) {
+fn choose_target(asked: Target, projection: CellProjection, device: Option<&Device>) -> (Target, String) {
+    if projection == CellProjection::March {
+        return (Target::Rgba32f, "composited in registers".into());
+    }
     let target = match asked {
         Target::Auto if device.is_some_and(|d| !d.blends_f32) => Target::Rgba16f,
         Target::Auto => Target::Rgba32f,
@@ -245,7 +265,10 @@ fn choose_table_precision(asked: TablePrecision, device: Option<&Device>) -> (Ta
     }
 }
 
-fn choose_order(scene: &Scene) -> (Order, String) {
+fn choose_order(scene: &Scene, projection: CellProjection) -> (Order, String) {
+    if projection == CellProjection::March {
+        return (Order::None, "the march finds the next cell itself".into());
+    }
     let one_luminance = scene.single_luminance().is_some();
     match scene.method.order {
         Order::Auto if one_luminance => {
@@ -410,9 +433,10 @@ mod tests {
             (Backend::Auto, Order::Auto, None, Some((Backend::Cpu, Order::Exact))),
             (Backend::Auto, Order::Auto, Some(&hardware), Some((Backend::Gpu, Order::Exact))),
             (Backend::Auto, Order::Auto, Some(&software), Some((Backend::Cpu, Order::Exact))),
-            (Backend::Auto, Order::Auto, Some(&half), Some((Backend::Cpu, Order::Exact))),
+            (Backend::Auto, Order::Auto, Some(&half), Some((Backend::Gpu, Order::None))),
+            (Backend::Auto, Order::Centroid, Some(&half), Some((Backend::Cpu, Order::Centroid))),
             (Backend::Gpu, Order::Auto, Some(&software), Some((Backend::Gpu, Order::Exact))),
-            (Backend::Gpu, Order::Auto, Some(&half), Some((Backend::Gpu, Order::Exact))),
+            (Backend::Gpu, Order::Auto, Some(&half), Some((Backend::Gpu, Order::None))),
             (Backend::Auto, Order::Pixel, Some(&hardware), Some((Backend::Cpu, Order::Pixel))),
             (Backend::Gpu, Order::Auto, None, None),
             (Backend::Gpu, Order::Pixel, Some(&hardware), None),
@@ -457,10 +481,15 @@ mod tests {
     }
 
     #[test]
-    fn an_adapter_that_cannot_blend_singles_gets_halves_and_a_warning() {
+    fn an_adapter_that_cannot_blend_singles_marches_or_gets_halves_and_a_warning() {
         let mesh = row(4);
-        let on_gpu = Method { backend: Backend::Gpu, ..Method::default() };
+        let marched = Method { backend: Backend::Gpu, ..Method::default() };
+        let on_gpu = Method { projection: CellProjection::Pt, ..marched };
         let planned = |method| Plan::new(&scene(&mesh, &[GREY], method), &mesh, Some(&device(false, false)));
+        let plan = planned(marched).unwrap();
+        assert_eq!((plan.projection, plan.target), (CellProjection::March, Target::Rgba32f));
+        assert!(plan.warnings.iter().all(|w| !w.contains("target")), "{:?}", plan.warnings);
+        assert_eq!(planned(Method { target: Target::Rgba16f, ..marched }).unwrap().projection, CellProjection::Pt);
         let plan = planned(on_gpu).unwrap();
         assert_eq!(plan.target, Target::Rgba16f);
         assert!(plan.warnings.iter().any(|w| w.contains("rgba16f") && w.contains("5e-2")), "{:?}", plan.warnings);

@@ -6,10 +6,10 @@ use wgpu::util::DeviceExt;
 
 use super::Open;
 use super::picture::Picture;
-use super::pipelines::{CELL_BYTES, Pipelines};
+use super::pipelines::Pipelines;
 use super::stretch::{scissor, stretches};
 use super::tables::{Lookup, binding_of, upload};
-use super::variant::{Binding, Geometry, Variant};
+use super::variant::{Binding, CELL_BYTES, Geometry, Variant};
 use crate::{Job, Resources};
 
 /// Invocations a workgroup of the compute stages, as shaders/stages have them.
@@ -25,21 +25,32 @@ pub(crate) struct Batch {
 }
 
 /// Cells a batch: what one binding of projected cells, and one dispatch, can hold.
-fn batch_size(limits: &wgpu::Limits, vertices: u32) -> u32 {
+fn batch_size(limits: &wgpu::Limits, geometry: &Geometry) -> u32 {
     let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let index_bytes = geometry.indices.map_or(0, size_of_val) as u64;
     let dispatch = limits.max_compute_workgroups_per_dimension.saturating_mul(WORKGROUP);
     // The vertices of a draw call are numbered in 32 bits.
-    u32::try_from(bytes / CELL_BYTES).unwrap_or(u32::MAX).min(dispatch).clamp(1, u32::MAX / vertices)
+    let cells = u32::try_from(bytes / geometry.bytes.max(index_bytes)).unwrap_or(u32::MAX);
+    cells.min(dispatch).clamp(1, u32::MAX / geometry.indices.map_or(geometry.vertices, |i| i.len() as u32))
 }
 
 /// Makes buffers and counts them.
-struct Maker<'a> {
+pub(super) struct Maker<'a> {
     device: &'a wgpu::Device,
     made: Cell<Resources>,
 }
 
-impl Maker<'_> {
-    fn count(&self, buffers: usize, textures: usize, bytes: u64) {
+impl<'a> Maker<'a> {
+    pub(super) fn new(device: &'a wgpu::Device, made: Resources) -> Maker<'a> {
+        Maker { device, made: Cell::new(made) }
+    }
+
+    /// Everything made so far.
+    pub(super) fn made(&self) -> Resources {
+        self.made.get()
+    }
+
+    pub(super) fn count(&self, buffers: usize, textures: usize, bytes: u64) {
         let mut made = self.made.get();
         made.buffers += buffers;
         made.textures += textures;
@@ -47,7 +58,7 @@ impl Maker<'_> {
         self.made.set(made);
     }
 
-    fn filled(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    pub(super) fn filled(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
         // Bindings may not be empty.
         let contents = if contents.is_empty() { &[0; 16] } else { contents };
         self.count(1, 0, contents.len() as u64);
@@ -64,7 +75,7 @@ impl Maker<'_> {
         })
     }
 
-    fn bind(&self, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
+    pub(super) fn bind(&self, layout: &wgpu::BindGroupLayout, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
         let entries: Vec<_> = buffers
             .iter()
             .map(|&(binding, b)| wgpu::BindGroupEntry { binding, resource: b.as_entire_binding() })
@@ -72,7 +83,7 @@ impl Maker<'_> {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    fn scene(&self, binding: Binding, job: &Job) -> wgpu::Buffer {
+    pub(super) fn scene(&self, binding: Binding, job: &Job) -> wgpu::Buffer {
         let storage = wgpu::BufferUsages::STORAGE;
         match binding {
             Binding::View => self.filled("view", bytemuck::bytes_of(&job.view), wgpu::BufferUsages::UNIFORM),
@@ -121,20 +132,26 @@ pub(super) fn draw(
     let cells = job.order.len() as u32;
     let pipeline_count = pipelines.count() + groups.map_or(0, Pipelines::count);
     let made = Resources { pipelines: pipeline_count, cells: job.order.len(), ..Resources::default() };
-    let make = Maker { device, made: Cell::new(made) };
+    let make = Maker::new(device, made);
     let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b as u32, make.scene(b, job))).collect();
     let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
     let scene = make.bind(&pipelines.scene, &scene);
 
     let tables = pipelines.tables.as_ref().map(|layout| tables(&make, queue, layout, job));
 
-    let Geometry { vertices, instanced, .. } = variant.geometry();
-    let batch = batch_size(&device.limits(), vertices).min(cells.max(1));
+    let geometry = variant.geometry();
+    let batch = batch_size(&device.limits(), &geometry).min(cells.max(1));
     let stretches = stretches(cells, if groups.is_some() { job.groups } else { &[] }, batch);
+    let indices = geometry.indices.map(|pattern| {
+        let all: Vec<u32> = (0..batch).flat_map(|i| pattern.iter().map(move |k| geometry.vertices * i + k)).collect();
+        make.filled("indices", bytemuck::cast_slice(&all), wgpu::BufferUsages::INDEX)
+    });
+    // Groups are projected whatever the other cells are.
+    let projected_bytes =
+        u64::from(batch) * if groups.is_some() { CELL_BYTES.max(geometry.bytes) } else { geometry.bytes };
     let projects = pipelines.compute.is_some() || groups.is_some();
-    let projected =
-        projects.then(|| make.empty("projected cells", u64::from(batch) * CELL_BYTES, wgpu::BufferUsages::STORAGE));
-    let picture = Picture::new(device, job.size, variant.format());
+    let projected = projects.then(|| make.empty("projected cells", projected_bytes, wgpu::BufferUsages::STORAGE));
+    let picture = Picture::new(device, job.size, variant.format(), wgpu::TextureUsages::RENDER_ATTACHMENT);
     let [texture, readback] = picture.bytes();
     make.count(0, 1, texture);
     make.count(1, 0, readback);
@@ -177,15 +194,18 @@ pub(super) fn draw(
             let [x, y, width, height] = scissor(job, &stretch.cells);
             pass.set_scissor_rect(x, y, width, height);
             pass.draw(0..3, 0..1);
-        } else if instanced {
-            pass.draw(0..vertices, 0..count);
+        } else if let (Some(indices), Some(pattern)) = (&indices, geometry.indices) {
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..pattern.len() as u32 * count, 0, 0..1);
+        } else if geometry.instanced {
+            pass.draw(0..geometry.vertices, 0..count);
         } else {
-            pass.draw(0..vertices * count, 0..1);
+            pass.draw(0..geometry.vertices * count, 0..1);
         }
         drop(pass);
         load = wgpu::LoadOp::Load;
     }
     picture.copy(&mut encoder);
     queue.submit([encoder.finish()]);
-    Ok((picture.read(device)?, make.made.get()))
+    Ok((picture.read(device)?, make.made()))
 }

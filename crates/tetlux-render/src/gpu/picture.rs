@@ -1,6 +1,6 @@
 //! The picture on the device, and back.
 
-/// The picture as a render target.
+/// The picture as a texture.
 pub(super) struct Picture {
     size: wgpu::Extent3d,
     format: wgpu::TextureFormat,
@@ -10,7 +10,13 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    pub(super) fn new(device: &wgpu::Device, [width, height]: [u32; 2], format: wgpu::TextureFormat) -> Picture {
+    /// `usage` is how it is written.
+    pub(super) fn new(
+        device: &wgpu::Device,
+        [width, height]: [u32; 2],
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> Picture {
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("picture"),
@@ -19,7 +25,7 @@ impl Picture {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            usage: usage | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
         let row_bytes = (width * pixel_bytes(format)).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);

@@ -5,9 +5,6 @@ use wgpu::{BindingType, BufferBindingType, ShaderStages};
 use super::variant::{Binding, Variant};
 use crate::RenderError;
 
-/// Bytes of a projected cell: `Cell` of shaders/lib/cell.wgsl.
-pub(crate) const CELL_BYTES: u64 = 80;
-
 #[derive(Debug)]
 pub(super) struct Pipelines {
     /// What [`Variant::bindings`] names.
@@ -117,7 +114,10 @@ impl Pipelines {
                     write_mask: wgpu::ColorWrites::ALL,
                 })],
             }),
-            primitive: wgpu::PrimitiveState::default(),
+            primitive: wgpu::PrimitiveState {
+                cull_mode: geometry.indices.map(|_| wgpu::Face::Back),
+                ..Default::default()
+            },
             depth_stencil: None,
             multisample: wgpu::MultisampleState::default(),
             multiview_mask: None,

@@ -22,11 +22,24 @@ pub(crate) struct Variant {
 pub(crate) struct Geometry {
     /// The compute stage that writes the projected cells, if there is one: its module, which is its entry point too.
     pub(crate) compute: Option<&'static str>,
+    /// What that stage writes a cell.
+    pub(crate) bytes: u64,
     /// Vertices a cell.
     pub(crate) vertices: u32,
     /// Cells are instances of one draw, rather than all vertices numbered through.
     pub(crate) instanced: bool,
+    /// They are drawn by these indices, seen counter-clockwise from the front.
+    pub(crate) indices: Option<&'static [u32]>,
 }
+
+/// Bytes of a projected cell: `Cell` of shaders/lib/cell.wgsl.
+pub(crate) const CELL_BYTES: u64 = 80;
+
+/// Bytes of a cell of balanced cell projection: `Balanced` of shaders/lib/balanced.wgsl.
+pub(crate) const BALANCED_BYTES: u64 = 32;
+
+/// The faces of a positively oriented cell, counter-clockwise from outside.
+const FACES: [u32; 12] = [1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1];
 
 /// A buffer of bind group 0, numbered as its binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,14 +100,19 @@ impl Variant {
             // Pre-integrated shading asks for no weights.
             _ => "weights::direct",
         };
-        let (geometry, interpolation) = match self.interpolation {
-            Interpolation::Auto | Interpolation::Ray => ("geometry::ray", "interpolation::perspective"),
-            Interpolation::Perspective => ("geometry::thick", "interpolation::perspective"),
-            Interpolation::ScreenLinear => ("geometry::thick", "interpolation::screen_linear"),
+        let interpolation = match self.interpolation {
+            Interpolation::ScreenLinear => "interpolation::screen_linear",
+            _ => "interpolation::perspective",
+        };
+        let geometry = match (self.projection, self.interpolation) {
+            (CellProjection::Balanced, _) => "geometry::balanced",
+            (CellProjection::Vicp, _) => "geometry::vicp",
+            (_, Interpolation::Auto | Interpolation::Ray) => "geometry::ray",
+            (_, Interpolation::Perspective | Interpolation::ScreenLinear) => "geometry::thick",
         };
         let source = match self.projection {
             CellProjection::Gator => "source::computed",
-            CellProjection::Auto | CellProjection::Pt => "source::stored",
+            _ => "source::stored",
         };
         let data = if self.cell_data { "data::cell" } else { "data::point" };
         let output = match self.target {
@@ -118,13 +136,23 @@ impl Variant {
     }
 
     pub(crate) fn geometry(&self) -> Geometry {
+        let pt = Geometry {
+            compute: Some("stages::project"),
+            bytes: CELL_BYTES,
+            vertices: 6,
+            instanced: false,
+            indices: None,
+        };
         match (self.projection, self.interpolation) {
-            (CellProjection::Gator, _) => Geometry { compute: None, vertices: 12, instanced: true },
-            (_, Interpolation::Auto | Interpolation::Ray) => {
-                Geometry { compute: Some("stages::project"), vertices: 6, instanced: false }
+            (CellProjection::Balanced, _) => {
+                let compute = Some("stages::balance");
+                Geometry { compute, bytes: BALANCED_BYTES, vertices: 4, indices: Some(&FACES), ..pt }
             }
+            (CellProjection::Gator, _) => Geometry { compute: None, vertices: 12, instanced: true, ..pt },
+            (CellProjection::Vicp, _) => Geometry { vertices: 12, ..pt },
+            (_, Interpolation::Auto | Interpolation::Ray) => pt,
             (_, Interpolation::Perspective | Interpolation::ScreenLinear) => {
-                Geometry { compute: Some("stages::decompose"), vertices: 12, instanced: false }
+                Geometry { compute: Some("stages::decompose"), vertices: 12, ..pt }
             }
         }
     }
@@ -139,7 +167,9 @@ impl Variant {
         if self.cell_data {
             bindings.push(Binding::CellScalars);
         }
-        bindings.push(Binding::Order);
+        if self.projection != CellProjection::March {
+            bindings.push(Binding::Order);
+        }
         if self.classification == Classification::PostClip {
             bindings.push(Binding::EntryPieces);
         }

@@ -10,10 +10,11 @@ use tetlux_reference::{Caster, Ray};
 use tetlux_scene::{Camera, Method, Projection, Scene, TablePrecision, View};
 
 use super::*;
-use crate::cell::{Kind, Lens};
+use crate::cell::Kind;
 use crate::device_mesh::{DeviceMesh, NEGATIVE};
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
+use crate::lens::Lens;
 
 /// Single precision against double: positions, scalars and weights are each good to some 1e-6.
 const EXACT: f64 = 1e-5;
@@ -57,6 +58,8 @@ impl Drawing {
             tables: &[],
             table_precision: TablePrecision::F32,
             table_length: 1.0,
+            march: None,
+            opaque: 1.0,
             size: self.view.size,
         };
         draw_on(level, &job, &mut Stages::default())

@@ -1,0 +1,114 @@
+// Where a ray crosses triangles, told by areas.
+//
+// Seen along the ray, that is in the oblique projection along it, a vertex has an offset from the ray, and the ray crosses
+// a triangle if the offsets of its vertices surround the origin. The sign of the area between two offsets is one
+// comparison of two products of the vertices' own numbers: all triangles at an edge agree on which side of it the ray
+// passes, so that no ray is lost between them. Areas also give the coordinates of the crossing in the triangle, in space
+// and not only in the picture, wherever the vertices lie, even behind the eye.
+//
+// The twin in Rust is tetlux-render, march.
+import package::lib::view::{view, ORTHOGRAPHIC};
+import package::lib::cell::{NUDGE};
+import package::axes::quantity::{Quantity};
+
+struct Ray {
+    // The direction's components across the view; the one along it is 1.
+    slope: vec2<f32>,
+    // Offset of the view's pivot.
+    pivot: vec2<f32>,
+}
+
+// A vertex as a ray sees it.
+struct Corner {
+    name: u32,
+    offset: vec2<f32>,
+    // Depth from the pivot, in device units.
+    depth: f32,
+    value: Quantity,
+}
+
+// The ray through a place in pixels from the picture's middle.
+fn ray_through(at: vec2<f32>) -> Ray {
+    let aside = at * view.pixel;
+    let pivot = vec2<f32>(view.right.w, view.down.w);
+    if ORTHOGRAPHIC {
+        return Ray(vec2<f32>(0.0), pivot - aside);
+    }
+    return Ray(aside, pivot - aside * view.forward.w);
+}
+
+// The offset of a position relative to the pivot, in the axes of eye space.
+fn offset_from(ray: Ray, frame: vec3<f32>) -> vec2<f32> {
+    return frame.xy - frame.z * ray.slope + ray.pivot;
+}
+
+// Whether the way from a to b turns from x towards y about the ray: exactly one of (a, b) and (b, a) does. Where the ray
+// meets the edge, as if it were moved aside by next to nothing, in a direction that no edge of a grid has.
+fn turns(a: Corner, b: Corner) -> bool {
+    let left = a.offset.x * b.offset.y;
+    let right = a.offset.y * b.offset.x;
+    if left != right {
+        return left > right;
+    }
+    let along = NUDGE * (a.offset - b.offset).yx;
+    if along.x != along.y {
+        return along.x > along.y;
+    }
+    return a.name < b.name;
+}
+
+fn area(a: Corner, b: Corner) -> f32 {
+    return a.offset.x * b.offset.y - a.offset.y * b.offset.x;
+}
+
+// Of a triangle that the ray crosses the coordinates of the crossing along the edges from the first vertex to the others.
+// The first should be opposite the longest edge: the longer two edges of a sliver are nearly parallel, and cancel. A
+// triangle that is seen edge-on is crossed in its middle.
+fn crossing(a: Corner, b: Corner, c: Corner) -> vec2<f32> {
+    let ab = b.offset - a.offset;
+    let ac = c.offset - a.offset;
+    let whole = ab.x * ac.y - ab.y * ac.x;
+    if !(whole > 0.0) {
+        return vec2<f32>(1.0 / 3.0);
+    }
+    let parts = vec2<f32>(ac.x * a.offset.y - ac.y * a.offset.x, ab.y * a.offset.x - ab.x * a.offset.y);
+    let along = clamp(parts / max(whole, 1e-37), vec2<f32>(0.0), vec2<f32>(1.0));
+    return vec2<f32>(along.x, min(along.y, 1.0 - along.x));
+}
+
+// Which of three vertices is opposite the longest edge, as seen: 0, 1 or 2.
+fn opposite_longest(a: Corner, b: Corner, c: Corner) -> u32 {
+    let ab = b.offset - a.offset;
+    let bc = c.offset - b.offset;
+    let ca = a.offset - c.offset;
+    let squares = vec3<f32>(dot(bc, bc), dot(ca, ca), dot(ab, ab));
+    return select(select(2u, 1u, squares.y >= squares.z), 0u, squares.x >= max(squares.y, squares.z));
+}
+
+// A place on the ray.
+struct Place {
+    // Depth from the pivot, in device units.
+    depth: f32,
+    value: Quantity,
+}
+
+// Where the ray crosses a triangle.
+fn place_of(a: Corner, b: Corner, c: Corner) -> Place {
+    var first = a;
+    var second = b;
+    var third = c;
+    let turn = opposite_longest(a, b, c);
+    if turn == 1u {
+        first = b;
+        second = c;
+        third = a;
+    } else if turn == 2u {
+        first = c;
+        second = a;
+        third = b;
+    }
+    let along = crossing(first, second, third);
+    let depth = first.depth + along.x * (second.depth - first.depth) + along.y * (third.depth - first.depth);
+    let value = (1.0 - along.x - along.y) * first.value + along.x * second.value + along.y * third.value;
+    return Place(depth, value);
+}
