@@ -1,3 +1,8 @@
+use glam::DVec3;
+use tetlux_mesh::procedural::{Split, cuboid};
+use tetlux_mesh::{Component, Field};
+use tetlux_scene::View;
+
 use super::*;
 
 fn corner(name: u32, x: f32, y: f32) -> Corner {
@@ -45,4 +50,69 @@ fn a_ray_on_a_vertex_crosses_one_of_the_triangles_around_it() {
         });
         assert_eq!(crossed.count(), 1);
     }
+}
+
+/// A row of four cubes along x, seen along it, four pixels wide and high.
+fn row() -> (TetMesh, View) {
+    let parts = cuboid([4, 1, 1], Split::Six, [DVec3::ZERO, DVec3::new(4.0, 1.0, 1.0)]);
+    let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![Field::point("x", 1, parts.sample(|p| p.x))]);
+    let view = View {
+        eye: DVec3::new(-3.0, 0.5, 0.5),
+        right: DVec3::NEG_Y,
+        down: DVec3::NEG_Z,
+        forward: DVec3::X,
+        size: [4, 4],
+        pixel: 0.25,
+        orthographic: true,
+        near: 0.0,
+    };
+    (mesh.unwrap(), view)
+}
+
+fn march_of(mesh: &TetMesh, view: &View, drawn: &[u32]) -> March {
+    let device = DeviceMesh::new(mesh, &mesh.scalar("x", Component::Magnitude).unwrap());
+    let lens = Lens { view: DeviceView::new(view, mesh, &device), orthographic: view.orthographic };
+    March::new(mesh, &device, &lens, drawn, view.size)
+}
+
+#[test]
+fn each_ray_comes_in_once_for_each_stretch_of_drawn_cells() {
+    let (mesh, view) = row();
+    // All of the far end is in the picture.
+    let perspective = View { pixel: 0.25 / 7.0, orthographic: false, ..view };
+    // The first cube, and the last two: a gap between.
+    let drawn: Vec<u32> = (0..24).filter(|cell| !(6..12).contains(cell)).collect();
+    for view in [view, perspective] {
+        let march = march_of(&mesh, &view, &drawn);
+        assert_eq!(march.starts, (0..=16).map(|i| 2 * i).collect::<Vec<u32>>());
+        for pair in march.entries.chunks(2) {
+            let [near, far] = [pair[0] / 4, pair[1] / 4];
+            assert!(near < 6 && (12..18).contains(&far), "nearest first: {near}, {far}");
+        }
+    }
+    assert!(march_of(&mesh, &view, &[]).entries.is_empty());
+}
+
+#[test]
+fn cells_across_a_face_have_its_vertices_and_are_drawn() {
+    let (mesh, view) = row();
+    let drawn: Vec<u32> = (0..18).collect();
+    let march = march_of(&mesh, &view, &drawn);
+    let ascending = |cell: usize| {
+        let mut names = mesh.cells()[cell];
+        names.sort_unstable();
+        names
+    };
+    let mut inner = 0;
+    for (cell, neighbors) in march.neighbors.iter().enumerate() {
+        for (k, &other) in neighbors.iter().enumerate().filter(|(_, other)| **other != NONE) {
+            assert!(other < 18);
+            let across = ascending(other as usize);
+            let face = ascending(cell).into_iter().enumerate().filter(|&(i, _)| i != k);
+            assert!(face.into_iter().all(|(_, name)| across.contains(&name)));
+            inner += usize::from(cell < 18);
+        }
+    }
+    // Six in each of three cubes, and two triangles between each two, from both sides.
+    assert_eq!(inner, 2 * (3 * 6 + 2 * 2));
 }
