@@ -6,7 +6,7 @@ use anyhow::{Result, bail};
 use serde::Serialize;
 use tetlux_image::{Encoding, Image, Metrics, compare, difference_picture, read_exr, write_png};
 use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray};
-use tetlux_render::{Model, Renderer};
+use tetlux_render::Renderer;
 use tetlux_scene::{Backend, Order, Plan};
 
 use crate::input::{Input, SceneArgs, stem};
@@ -86,6 +86,7 @@ fn compare_scene(args: &Args, scene: Option<&Path>) -> Result<bool> {
     all.extend(stages.into_vec());
     let mut report = Report::new(&input, &plan, adapter.as_deref(), &all);
     report.resources = (plan.backend == Backend::Gpu).then(|| frame.resources.into());
+    report.add(&frame);
     report.print_stages();
     print_metrics(&metrics, budget);
     let path = |suffix: &str| args.output.join(format!("{}{suffix}.png", input.name));
@@ -159,7 +160,7 @@ fn ordering_faults(
 ) -> Result<(OrderingFaults, Image)> {
     let sorted_plan = Plan { backend: Backend::Cpu, order: Order::Pixel, ..plan.clone() };
     let sorted = progress::during("sorting every pixel", || {
-        renderer.render(&input.scene, &Model::new(&input.mesh), &sorted_plan)
+        renderer.render(&input.scene, &input.model(&sorted_plan), &sorted_plan)
     })?;
     let budget = input.scene.method.max_error;
     let error =

@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use tetlux_ingest::{CacheOutcome, TetMesh};
+use tetlux_ingest::{CacheOutcome, Extras, TetMesh};
 use tetlux_mesh::procedural;
+use tetlux_order::Facts;
+use tetlux_render::Model;
 use tetlux_scene::{
-    Backend, CellProjection, Classification, FieldSpec, Integrator, Interpolation, Order, Projection, Scene, SceneFile,
-    TablePrecision, Target, TransferSource, UnitDistance,
+    Backend, CellProjection, Classification, FieldSpec, Integrator, Interpolation, Order, Plan, Projection, Scene,
+    SceneFile, TablePrecision, Target, TransferSource, UnitDistance,
 };
 
 use crate::mesh_args::MeshArgs;
@@ -93,6 +95,29 @@ pub(crate) struct Input {
     pub(crate) mesh: TetMesh,
     pub(crate) scene: Scene,
     pub(crate) display_space: bool,
+    /// What is kept beside the mesh between runs.
+    pub(crate) extras: Option<Extras>,
+}
+
+/// Under which the facts of a mesh are kept beside it.
+const FACTS: &str = "order-facts";
+
+impl Input {
+    /// The mesh with what was found of it in an earlier run, as far as the plan needs it.
+    pub(crate) fn model(&self, plan: &Plan) -> Model<'_> {
+        let bytes = if plan.order.needs_facts() { self.extras.as_ref().and_then(|e| e.get(FACTS)) } else { None };
+        match bytes.and_then(|bytes| Facts::from_bytes(&bytes, &self.mesh)) {
+            Some(facts) => Model::with_facts(&self.mesh, facts),
+            None => Model::new(&self.mesh),
+        }
+    }
+
+    /// Keeps what was found of the mesh for later runs; that it cannot be kept is no fault of the picture's.
+    pub(crate) fn keep(&self, model: &Model) {
+        if let (Some(extras), Some(facts)) = (&self.extras, model.found_facts()) {
+            let _ = extras.store(FACTS, &facts.to_bytes());
+        }
+    }
 }
 
 /// The scene of a mesh that comes without one.
@@ -119,6 +144,7 @@ impl SceneArgs {
         }
         self.override_scene(&mut file)?;
         let mesh_path = mesh.map(Path::to_path_buf).or(file.mesh.clone());
+        let mut extras = None;
         let mesh = match mesh_path {
             None if path.is_none() || file.built_in => {
                 if let Some(flag) = self.file.of_a_file() {
@@ -138,6 +164,7 @@ impl SceneArgs {
                 if !matches!(loaded.outcome, CacheOutcome::Off | CacheOutcome::Small) {
                     say!("mesh cache: {}", loaded.outcome);
                 }
+                extras = loaded.extras;
                 loaded.mesh
             }
         };
@@ -148,7 +175,7 @@ impl SceneArgs {
             // The first field, as other programs do; the report says which.
             file.field = file.field.or_else(|| mesh.fields().first().map(|f| f.name.clone()));
         }
-        self.bind(name, file, mesh)
+        Ok(Input { extras, ..self.bind(name, file, mesh)? })
     }
 
     /// A scene, which flags have overridden, on a mesh.
@@ -157,7 +184,7 @@ impl SceneArgs {
         if let Some(parallel_scale) = self.parallel_scale {
             scene.camera.projection = Projection::Orthographic { parallel_scale };
         }
-        Ok(Input { name, title: file.title, mesh, scene, display_space: file.display_space })
+        Ok(Input { name, title: file.title, mesh, scene, display_space: file.display_space, extras: None })
     }
 
     /// Sets what flags say.

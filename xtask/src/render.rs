@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use tetlux_image::{Encoding, Image, write_exr, write_png};
-use tetlux_render::{Frame, Model, Renderer, Stages};
+use tetlux_render::{Frame, Renderer, Stages};
 use tetlux_scene::{Backend, Plan};
 
 use crate::input::{Input, SceneArgs};
@@ -44,6 +44,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     })?;
     let mut report = Report::new(&input, &plan, adapter.as_deref(), &frame.stages);
     report.resources = (plan.backend == Backend::Gpu).then(|| frame.resources.into());
+    report.add(&frame);
     report.print_stages();
     let png = args.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name).with_extension("png"));
     report.files = write_picture(&input, &frame.image, &png)?;
@@ -60,9 +61,10 @@ pub(crate) fn render(input: &Input, renderer: &Renderer, announce: impl FnOnce(&
     let plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, renderer.device()))?;
     announce(&plan);
     let tables = stages.run("tables", || tables::load(input, &plan))?;
-    let model = Model::new(&input.mesh);
+    let model = input.model(&plan);
     let render = || renderer.render_with(&input.scene, &model, &plan, &tables);
     let mut frame = progress::during("rendering", render)?;
+    input.keep(&model);
     let mut all = stages.into_vec();
     all.append(&mut frame.stages);
     frame.stages = all;

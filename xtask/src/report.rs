@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use tetlux_image::{Metrics, write_atomically};
-use tetlux_render::{Resources, Stage};
+use tetlux_render::{Frame, Resources, Stage};
 use tetlux_scene::Plan;
 
 use crate::input::Input;
@@ -41,7 +41,21 @@ pub(crate) struct Report<'a> {
     pub(crate) error: Option<Metrics>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) ordering_faults: Option<OrderingFaults>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    found: Option<Found<'a>>,
     pub(crate) files: Vec<String>,
+}
+
+/// What was found while a picture was made.
+#[derive(Serialize)]
+struct Found<'a> {
+    order: String,
+    signs_in_double: usize,
+    signs_exact: usize,
+    gap_arrows: usize,
+    cells_in_groups: usize,
+    overlap_pixels: usize,
+    warnings: &'a [String],
 }
 
 /// Pixels over the budget that come right when their segments are sorted.
@@ -110,6 +124,7 @@ impl<'a> Report<'a> {
             resources: None,
             error: None,
             ordering_faults: None,
+            found: None,
             files: Vec::new(),
         }
     }
@@ -125,6 +140,24 @@ impl<'a> Report<'a> {
         for warning in self.warnings {
             say!("warning: {warning}");
         }
+    }
+
+    /// Notes, and prints, what was found while the picture was made.
+    pub(crate) fn add(&mut self, frame: &'a Frame) {
+        let order = &frame.order;
+        if order.cells_in_groups > 0 {
+            say!("order: {} cells in cycles or overlapping are sorted for every pixel", order.cells_in_groups);
+        }
+        frame.warnings.iter().for_each(|warning| say!("warning: {warning}"));
+        self.found = Some(Found {
+            order: order.method.to_string(),
+            signs_in_double: order.signs_in_double,
+            signs_exact: order.signs_exact,
+            gap_arrows: order.gap_arrows,
+            cells_in_groups: order.cells_in_groups,
+            overlap_pixels: order.overlap_pixels,
+            warnings: &frame.warnings,
+        });
     }
 
     pub(crate) fn print_stages(&self) {

@@ -11,7 +11,7 @@ mod folder;
 mod read_cached;
 
 pub use folder::{Cache, CacheEntry};
-pub use read_cached::{CacheOutcome, Loaded, Miss, read_cached};
+pub use read_cached::{CacheOutcome, Extras, Loaded, Miss, read_cached};
 
 use std::fs;
 use std::path::Path;

@@ -56,7 +56,7 @@ mod vtk_legacy;
 mod vtk_xml;
 mod words;
 
-pub use cache::{Cache, CacheEntry, CacheOutcome, Loaded, Miss, read_cached};
+pub use cache::{Cache, CacheEntry, CacheOutcome, Extras, Loaded, Miss, read_cached};
 pub use error::{IngestError, Place};
 pub use expression::{Expression, ExpressionError};
 pub use mixed::{MixedCells, MixedMesh, StructuredGrid};

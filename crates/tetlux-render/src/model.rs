@@ -10,17 +10,19 @@ use tetlux_order::Facts;
 pub struct Model<'a> {
     mesh: &'a TetMesh,
     facts: OnceLock<Facts>,
+    /// The facts came with the mesh.
+    known: bool,
 }
 
 impl<'a> Model<'a> {
     /// Nothing is found before a picture needs it.
     pub fn new(mesh: &'a TetMesh) -> Model<'a> {
-        Model { mesh, facts: OnceLock::new() }
+        Model { mesh, facts: OnceLock::new(), known: false }
     }
 
     /// With the mesh's facts as they were found before.
     pub fn with_facts(mesh: &'a TetMesh, facts: Facts) -> Model<'a> {
-        Model { mesh, facts: OnceLock::from(facts) }
+        Model { mesh, facts: OnceLock::from(facts), known: true }
     }
 
     /// The mesh.
@@ -33,8 +35,8 @@ impl<'a> Model<'a> {
         self.facts.get_or_init(|| Facts::new(self.mesh))
     }
 
-    /// The same, if it has been found.
-    pub fn known_facts(&self) -> Option<&Facts> {
-        self.facts.get()
+    /// The facts, if a picture needed them and they did not come with the mesh: worth keeping for later.
+    pub fn found_facts(&self) -> Option<&Facts> {
+        self.facts.get().filter(|_| !self.known)
     }
 }

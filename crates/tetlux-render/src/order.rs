@@ -18,7 +18,8 @@ pub(crate) fn order(orderer: &Mutex<Orderer>, model: &Model, plan: &Plan, stages
             let cells = stages.run("order", || tetlux_order::centroid(model.mesh(), eye, &plan.cells));
             let end = cells.len() as u32;
             // Pixels are sorted the faster the better they are sorted already.
-            let groups = if plan.order == Asked::Pixel && end > 1 { vec![0..end] } else { Vec::new() };
+            let all = std::iter::once(0..end);
+            let groups = all.filter(|group| plan.order == Asked::Pixel && group.len() > 1).collect();
             let report = tetlux_order::OrderReport { method: Method::Centroid, ..Default::default() };
             return Order { cells, groups, report };
         }
@@ -27,9 +28,7 @@ pub(crate) fn order(orderer: &Mutex<Orderer>, model: &Model, plan: &Plan, stages
         Asked::Mpvonc => Method::Mpvonc,
         Asked::Exact | Asked::Auto => Method::Exact,
     };
-    if model.known_facts().is_none() {
-        stages.run("facts", || model.facts());
-    }
+    stages.run("facts", || model.facts());
     stages.run("order", || {
         let mut drawn = vec![false; model.mesh().cells().len()];
         plan.cells.iter().for_each(|&cell| drawn[cell as usize] = true);

@@ -67,6 +67,13 @@ named! {
     }
 }
 
+impl Order {
+    /// Whether it takes the facts of the mesh that no view changes.
+    pub fn needs_facts(self) -> bool {
+        matches!(self, Order::Auto | Order::Power | Order::Mpvo | Order::Mpvonc | Order::Exact)
+    }
+}
+
 named! {
     /// How cells become fragments on a graphics adapter.
     CellProjection {

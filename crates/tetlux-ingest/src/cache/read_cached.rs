@@ -29,8 +29,8 @@ pub struct Loaded {
     pub notes: Vec<String>,
     /// How the mesh was had.
     pub outcome: CacheOutcome,
-    /// Where other things can be stored beside it.
-    place: Option<Place>,
+    /// Where other things can be stored beside the mesh; `None` if it is not stored.
+    pub extras: Option<Extras>,
 }
 
 /// How a mesh was had.
@@ -104,46 +104,42 @@ pub fn read_cached(
     }
 }
 
-impl Loaded {
-    /// Something that was stored beside the mesh under a name; `None` if there is none of just this mesh.
-    pub fn extra(&self, name: &str) -> Option<Vec<u8>> {
-        let (place, path) = self.extra_path(name)?;
-        let bytes = fs::read(path).ok()?;
-        let (hash, content) = bytes.split_at_checked(32)?;
-        (place.hash(content).as_bytes() == hash).then(|| content.to_vec())
-    }
-
-    /// Stores something beside the mesh, in place of what is there of this name (letters, digits and hyphens); false if
-    /// the mesh itself is not stored.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub fn store_extra(&self, name: &str, content: &[u8]) -> io::Result<bool> {
-        let Some((place, path)) = self.extra_path(name) else { return Ok(false) };
-        place.cache.store(&path, |file| {
-            file.write_all(place.hash(content).as_bytes())?;
-            file.write_all(content)
-        })?;
-        Ok(true)
-    }
-
-    fn extra_path(&self, name: &str) -> Option<(&Place, PathBuf)> {
-        let plain = !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-');
-        let place = self.place.as_ref().filter(|_| plain)?;
-        Some((place, place.cache.extra_path(&place.key, name)))
-    }
-}
-
-/// Where a mesh is stored.
+/// What is stored beside a mesh, such as what was found of it at some cost: gone, or not found, once the mesh is another.
 #[derive(Debug)]
-struct Place {
+pub struct Extras {
     cache: Cache,
     key: String,
     /// Of the mesh that is stored there.
     identity: [u8; 32],
 }
 
-impl Place {
+impl Extras {
+    /// What was stored under a name; `None` if there is nothing of just this mesh.
+    pub fn get(&self, name: &str) -> Option<Vec<u8>> {
+        let bytes = fs::read(self.path(name)?).ok()?;
+        let (hash, content) = bytes.split_at_checked(32)?;
+        (self.hash(content).as_bytes() == hash).then(|| content.to_vec())
+    }
+
+    /// Stores something in place of what is there of this name; false if the name has other than letters, digits and
+    /// hyphens.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn store(&self, name: &str, content: &[u8]) -> io::Result<bool> {
+        let Some(path) = self.path(name) else { return Ok(false) };
+        self.cache.store(&path, |file| {
+            file.write_all(self.hash(content).as_bytes())?;
+            file.write_all(content)
+        })?;
+        Ok(true)
+    }
+
+    fn path(&self, name: &str) -> Option<PathBuf> {
+        let plain = !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-');
+        plain.then(|| self.cache.extra_path(&self.key, name))
+    }
+
     /// The hash of something that belongs to the mesh.
     fn hash(&self, content: &[u8]) -> blake3::Hash {
         blake3::Hasher::new_keyed(&self.identity).update(content).finalize()
@@ -176,7 +172,7 @@ fn load(cache: &Cache, key: &str) -> Result<Loaded, Miss> {
     }
     let newer = up_to_date(&origin)?;
     let mesh = reader.mesh(length).map_err(Miss::Unfit)?;
-    let place = Place { cache: cache.clone(), key: key.into(), identity: origin.identity() };
+    let extras = Extras { cache: cache.clone(), key: key.into(), identity: origin.identity() };
     if newer.iter().zip(&origin.sources).any(|(stamp, source)| *stamp != source.stamp) {
         // The content was compared: the next time the stamps will do. If that fails it is compared again.
         newer.into_iter().zip(&mut origin.sources).for_each(|(stamp, source)| source.stamp = stamp);
@@ -185,7 +181,7 @@ fn load(cache: &Cache, key: &str) -> Result<Loaded, Miss> {
         note_use(&path);
     }
     let Origin { cell_counts, notes, .. } = origin;
-    Ok(Loaded { mesh, cell_counts, notes, outcome: CacheOutcome::Hit, place: Some(place) })
+    Ok(Loaded { mesh, cell_counts, notes, outcome: CacheOutcome::Hit, extras: Some(extras) })
 }
 
 /// Whether this version made the mesh and its files are what they were; gives their stamps as they are now, all zero
@@ -230,7 +226,7 @@ fn read_anew(
     let cell_counts = mixed.cell_counts().into_iter().map(|(name, count)| (name.to_string(), count as u64)).collect();
     let notes = std::mem::take(&mut mixed.notes);
     let mesh = mixed.tetrahedralize(split)?;
-    Ok((Loaded { mesh, cell_counts, notes, outcome: CacheOutcome::Off, place: None }, files.record))
+    Ok((Loaded { mesh, cell_counts, notes, outcome: CacheOutcome::Off, extras: None }, files.record))
 }
 
 fn store(cache: &Cache, key: String, sources: Option<Vec<SourceFile>>, miss: Miss, loaded: &mut Loaded) {
@@ -254,7 +250,7 @@ fn store(cache: &Cache, key: String, sources: Option<Vec<SourceFile>>, miss: Mis
     let origin = Origin { maker: maker(), options: key.clone(), sources, cell_counts, notes };
     loaded.outcome = match cache.store(&cache.path(&key), |file| mesh.write_cache(&origin, file)) {
         Ok(()) => {
-            loaded.place = Some(Place { cache: cache.clone(), key, identity: origin.identity() });
+            loaded.extras = Some(Extras { cache: cache.clone(), key, identity: origin.identity() });
             CacheOutcome::Stored(miss)
         }
         Err(error) => CacheOutcome::NotStored(format!("{}: {error}", cache.folder.display())),

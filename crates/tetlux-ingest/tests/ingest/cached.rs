@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use tetlux_ingest::{
-    Cache, CacheOutcome, Expression, Loaded, Miss, ReadOptions, Split, TetMesh, read_cached, read_tet_mesh,
+    Cache, CacheOutcome, Expression, Extras, Loaded, Miss, ReadOptions, Split, TetMesh, read_cached, read_tet_mesh,
 };
 use tetlux_mesh::cache::{CacheMiss, CacheReader};
 
@@ -18,6 +18,14 @@ fn cache(folder: &Folder) -> Cache {
 
 fn load(path: &Path, cache: &Cache) -> Loaded {
     read_cached(path, &ReadOptions::default(), Split::Six, Some(cache)).unwrap()
+}
+
+fn extras(loaded: &Loaded) -> &Extras {
+    loaded.extras.as_ref().unwrap()
+}
+
+fn extra(path: &Path, cache: &Cache, name: &str) -> Option<Vec<u8>> {
+    extras(&load(path, cache)).get(name)
 }
 
 fn outcome(path: &Path, cache: &Cache) -> CacheOutcome {
@@ -225,7 +233,7 @@ fn a_cache_that_cannot_be_written_is_told_and_no_error() {
     let cache = Cache { least_cells: 1, ..Cache::in_folder(folder.write("file", b"kept").join("cache")) };
     let loaded = load(&path, &cache);
     assert!(matches!(&loaded.outcome, CacheOutcome::NotStored(why) if why.contains("cache")), "{:?}", loaded.outcome);
-    assert!(!loaded.store_extra("order", b"x").unwrap());
+    assert!(loaded.extras.is_none());
     assert!(!loaded.mesh.cells().is_empty());
 }
 
@@ -304,27 +312,27 @@ fn what_is_stored_beside_a_mesh_belongs_to_just_that_mesh() {
     let folder = Folder::new();
     let (path, cache) = (folder.write("a.vtu", &numbered(0.0)), cache(&folder));
     let first = load(&path, &cache);
-    assert_eq!(first.extra("order"), None);
-    assert!(first.store_extra("order", b"facts").unwrap());
-    assert_eq!(load(&path, &cache).extra("order"), Some(b"facts".to_vec()));
-    assert_eq!(load(&path, &cache).extra("other"), None);
+    assert_eq!(extras(&first).get("order"), None);
+    assert!(extras(&first).store("order", b"facts").unwrap());
+    assert_eq!(extra(&path, &cache, "order"), Some(b"facts".to_vec()));
+    assert_eq!(extra(&path, &cache, "other"), None);
     for bad in ["", "a/b", "..", "a.b"] {
-        assert!(!first.store_extra(bad, b"x").unwrap() && first.extra(bad).is_none());
+        assert!(!extras(&first).store(bad, b"x").unwrap() && extras(&first).get(bad).is_none());
     }
     // It counts, is listed with its mesh, and goes with it.
     let listed = &cache.entries().unwrap()[0];
     assert!(listed.bytes > fs::metadata(&listed.path).unwrap().len());
     // A touched file leaves it, another content or a damaged byte does not.
     File::options().write(true).open(&path).unwrap().set_modified(SystemTime::UNIX_EPOCH).unwrap();
-    assert_eq!(load(&path, &cache).extra("order"), Some(b"facts".to_vec()));
+    assert_eq!(extra(&path, &cache, "order"), Some(b"facts".to_vec()));
     let beside = fs::read_dir(&cache.folder).unwrap().map(|e| e.unwrap().path()).find(|p| *p != listed.path).unwrap();
     let mut bytes = fs::read(&beside).unwrap();
     *bytes.last_mut().unwrap() ^= 1;
     fs::write(&beside, bytes).unwrap();
-    assert_eq!(load(&path, &cache).extra("order"), None);
-    first.store_extra("order", b"facts").unwrap();
+    assert_eq!(extra(&path, &cache, "order"), None);
+    extras(&first).store("order", b"facts").unwrap();
     folder.write("a.vtu", &numbered(1.0));
-    assert_eq!(load(&path, &cache).extra("order"), None);
+    assert_eq!(extra(&path, &cache, "order"), None);
     cache.clear().unwrap();
     assert_eq!(fs::read_dir(&cache.folder).unwrap().count(), 0);
 }

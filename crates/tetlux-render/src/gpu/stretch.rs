@@ -90,7 +90,7 @@ mod tests {
         // A group at either end, and one next to another.
         assert_eq!(stretches(6, &[0..2, 2..4, 4..6], 100), [group(4..6), group(2..4), group(0..2)]);
         // Too large for one call.
-        assert_eq!(stretches(9, &[1..8], 5), [plain(4..9), plain(0..4)]);
+        assert_eq!(stretches(9, std::slice::from_ref(&(1..8)), 5), [plain(4..9), plain(0..4)]);
         assert_eq!(stretches(0, &[], 5), [plain(0..0)]);
     }
 }
