@@ -41,6 +41,7 @@ mod eye_space;
 mod gpu;
 #[cfg(test)]
 mod layout_tests;
+mod look;
 mod model;
 mod order;
 mod resources;
@@ -49,6 +50,7 @@ mod tables;
 mod tiles;
 
 pub use error::RenderError;
+pub use look::Spent;
 pub use model::Model;
 pub use resources::Resources;
 pub use stage::{Stage, Stages};
@@ -67,6 +69,7 @@ use tetlux_tables::{Table, TableKind, TableSpec};
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
+use crate::look::Look;
 
 /// A picture and the time it took.
 #[derive(Debug)]
@@ -79,6 +82,8 @@ pub struct Frame {
     pub resources: Resources,
     /// How the cells were ordered.
     pub order: OrderReport,
+    /// The pieces that it took to keep to the error budget, where there are two fields or light.
+    pub spent: Option<Spent>,
     /// Where the picture may be wrong, found on the way.
     pub warnings: Vec<String>,
 }
@@ -91,6 +96,8 @@ struct Job<'a> {
     eye: EyeSpace,
     pieces: &'a [Piece],
     weights: Weights,
+    /// What the scene asks for beyond one field's transfer function.
+    look: Option<Look>,
     /// The cells to draw, nearest first.
     order: &'a [u32],
     /// Ranges of positions in `order`, ascending and apart, whose cells have no order among themselves: they are
@@ -164,8 +171,11 @@ impl Renderer {
         let (mesh, view) = (model.mesh(), &plan.view);
         let mut order = order::order(&self.orderer, model, plan, &mut stages);
         let device_mesh = stages.run("prepare", || DeviceMesh::new(mesh, &scene.scalar));
-        let transfer = scene.transfer().ok_or(RenderError::Bivariate)?;
-        let pieces = pieces(transfer, scene.scalar.range, 1.0 / (scene.unit_distance * device_mesh.scale));
+        let extinction = 1.0 / (scene.unit_distance * device_mesh.scale);
+        // Of a function of two fields one piece of nothing.
+        let pieces = scene
+            .transfer()
+            .map_or_else(|| vec![Piece::default()], |transfer| pieces(transfer, scene.scalar.range, extinction));
         let weights = match plan.integrator {
             Integrator::Average => Weights::Average,
             // The CPU back end has these two: the plan sees to it.
@@ -179,13 +189,19 @@ impl Renderer {
         } else {
             (std::mem::take(&mut order.cells), Vec::new())
         };
+        let eye = EyeSpace::new(view, mesh, &device_mesh);
+        let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), extinction)?;
+        if plan.backend == Backend::Gpu && look.is_some() {
+            return Err(RenderError::CpuOnly);
+        }
         let job = Job {
             mesh: &device_mesh,
             scalar: &scene.scalar,
             view: DeviceView::new(view, mesh, &device_mesh),
-            eye: EyeSpace::new(view, mesh, &device_mesh),
+            eye,
             pieces: &pieces,
             weights,
+            look,
             order: &cells,
             groups: &order.groups,
             max_error: scene.method.max_error,
@@ -195,16 +211,18 @@ impl Renderer {
             tables: &tables,
             size: view.size,
         };
+        let mut spent = None;
         let (pixels, resources) = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
-                let pixels = tiles::draw(&job, &mut stages);
+                let (pixels, pieces) = tiles::draw(&job, &mut stages);
+                spent = job.look.is_some().then_some(pieces);
                 (pixels, Resources { cells: cells.len(), ..Resources::default() })
             }
         };
         let warnings = order::doubts(&order, plan);
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
-        Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report, warnings })
+        Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report, spent, warnings })
     }
 }
 
