@@ -87,6 +87,7 @@ fn compare_scene(args: &Args, scene: Option<&Path>) -> Result<bool> {
     let mut report = Report::new(&input, &plan, adapter.as_deref(), &all);
     report.resources = (plan.backend == Backend::Gpu).then(|| frame.resources.into());
     report.add(&frame);
+    report.adaptive = frame.spent.map(Into::into);
     report.print_stages();
     print_metrics(&metrics, budget);
     let path = |suffix: &str| args.output.join(format!("{}{suffix}.png", input.name));

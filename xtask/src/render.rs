@@ -45,6 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let mut report = Report::new(&input, &plan, adapter.as_deref(), &frame.stages);
     report.resources = (plan.backend == Backend::Gpu).then(|| frame.resources.into());
     report.add(&frame);
+    report.adaptive = frame.spent.map(Into::into);
     report.print_stages();
     let png = args.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name).with_extension("png"));
     report.files = write_picture(&input, &frame.image, &png)?;

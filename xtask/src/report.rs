@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use tetlux_image::{Metrics, write_atomically};
-use tetlux_render::{Frame, Resources, Stage};
+use tetlux_render::{Frame, Resources, Spent, Stage};
 use tetlux_scene::Plan;
 
 use crate::input::Input;
@@ -37,6 +37,8 @@ pub(crate) struct Report<'a> {
     stages: Vec<StageReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) resources: Option<ResourceReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) adaptive: Option<AdaptiveReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) error: Option<Metrics>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -86,6 +88,20 @@ impl From<Resources> for ResourceReport {
     }
 }
 
+/// What segments took that were shaded one by one.
+#[derive(Serialize, Clone, Copy)]
+pub(crate) struct AdaptiveReport {
+    segments: u64,
+    pieces: u64,
+    pieces_per_segment: f64,
+}
+
+impl From<Spent> for AdaptiveReport {
+    fn from(spent: Spent) -> Self {
+        AdaptiveReport { segments: spent.segments, pieces: spent.pieces, pieces_per_segment: spent.mean() }
+    }
+}
+
 #[derive(Serialize)]
 struct StageReport {
     name: &'static str,
@@ -122,6 +138,7 @@ impl<'a> Report<'a> {
                 .map(|s| StageReport { name: s.name, wall_seconds: s.wall, cpu_seconds: s.cpu })
                 .collect(),
             resources: None,
+            adaptive: None,
             error: None,
             ordering_faults: None,
             found: None,
@@ -176,6 +193,9 @@ impl<'a> Report<'a> {
                 "device: {pipelines} pipelines, {buffers} buffers, {textures} textures, {:.1} MiB; {cells_drawn} cells drawn",
                 bytes as f64 / f64::from(1 << 20)
             );
+        }
+        if let Some(AdaptiveReport { segments, pieces_per_segment, .. }) = self.adaptive {
+            say!("shaded: {segments} segments, {pieces_per_segment:.2} pieces each");
         }
     }
 

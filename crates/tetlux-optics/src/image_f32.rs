@@ -13,6 +13,7 @@ mod tests;
 
 use crate::image_function::ImageFunction;
 use crate::segment_f32::opacity;
+use crate::widgets_f32::Integrated;
 
 /// No segment is cut into more pieces than about this.
 pub const MAX_PIECES: u32 = 1024;
@@ -103,7 +104,14 @@ fn difference(a: [f32; 4], b: [f32; 4]) -> f32 {
 
 /// Premultiplied colour and alpha of a segment with normalised scalars `front` and `back`, of a length in device units:
 /// alpha exact, the error of every channel at most `bound` (and what f32 cannot hold, some 1e-5).
+///
+/// The error is at most `bound` times the segment's alpha, too: that of every piece is at most its share of it.
 pub fn integrate(image: &Image, front: [f32; 2], back: [f32; 2], length: f32, bound: f32) -> [f32; 4] {
+    integrate_counted(image, front, back, length, bound).color
+}
+
+/// The same, with the pieces that it took.
+pub fn integrate_counted(image: &Image, front: [f32; 2], back: [f32; 2], length: f32, bound: f32) -> Integrated {
     let from = [front[0] * image.scale[0] + image.origin[0], front[1] * image.scale[1] + image.origin[1]];
     let step = [(back[0] - front[0]) * image.scale[0], (back[1] - front[1]) * image.scale[1]];
     let last = [image.size[0] - 1, image.size[1] - 1];
@@ -133,7 +141,7 @@ pub fn integrate(image: &Image, front: [f32; 2], back: [f32; 2], length: f32, bo
         }
         u = end;
     }
-    result
+    Integrated { color: result, pieces: spent }
 }
 
 /// Composites the piece from u0 on behind what is there.

@@ -37,6 +37,9 @@ use crate::widget_f32::{Track, Widget, inside, kinks, next_kink, track, track_de
 /// No segment is cut into more pieces than about this.
 pub const MAX_PIECES: u32 = 512;
 
+/// An error that thousands of segments do not make visible.
+const LEAST_BOUND: f32 = 1e-12;
+
 /// Premultiplied colour and alpha, and the pieces that it took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Integrated {
@@ -225,6 +228,24 @@ fn piece(
 /// exact, the error of every channel at most `bound` (and what f32 cannot hold, some 1e-5).
 pub fn integrate(widgets: &[Widget], front: [f32; 2], back: [f32; 2], length: f32, bound: f32) -> Integrated {
     let sum = summary(widgets, front, back, length);
+    integrate_summed(widgets, front, back, length, &sum, bound)
+}
+
+/// The same with an error of at most `share` of the segment's alpha. The alphas of a ray's segments, each as far as it is
+/// seen, add up to the ray's: the ray errs by at most `share` of that, however many segments it has.
+pub fn integrate_share(widgets: &[Widget], front: [f32; 2], back: [f32; 2], length: f32, share: f32) -> Integrated {
+    let sum = summary(widgets, front, back, length);
+    integrate_summed(widgets, front, back, length, &sum, (share * opacity(sum.depth)).max(LEAST_BOUND))
+}
+
+fn integrate_summed(
+    widgets: &[Widget],
+    front: [f32; 2],
+    back: [f32; 2],
+    length: f32,
+    sum: &Summary,
+    bound: f32,
+) -> Integrated {
     if sum.depth <= 0.0 {
         return Integrated::default();
     }
@@ -237,7 +258,7 @@ pub fn integrate(widgets: &[Widget], front: [f32; 2], back: [f32; 2], length: f3
         let few = sum.kinks <= MAX_PIECES as f32;
         let mut step = 1.0;
         if matters {
-            let count = if few { pieces(&sum, spread, alpha, bound) } else { MAX_PIECES };
+            let count = if few { pieces(sum, spread, alpha, bound) } else { MAX_PIECES };
             step = 1.0 / count as f32;
         }
         let cut = composite(widgets, front, back, length, step, matters && few, false);

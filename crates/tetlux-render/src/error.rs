@@ -6,9 +6,12 @@ use tetlux_shaders::ComposeError;
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// The scene takes two fields.
-    #[error("classification by two fields is not drawn yet")]
-    Bivariate,
+    /// The plan wants light or classification by two fields of a graphics adapter.
+    #[error("classification by two fields, and light, are drawn by the CPU back end alone: use --backend cpu")]
+    CpuOnly,
+    /// The scene lacks what its classification or its light needs.
+    #[error("the scene needs {0}, and has none: make it with SceneFile::scene on this mesh")]
+    Missing(&'static str),
     /// The plan wants a graphics adapter and there is none.
     #[error("there is no graphics adapter: use the CPU back end, or install a driver")]
     NoAdapter,

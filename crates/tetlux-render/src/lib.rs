@@ -42,6 +42,7 @@ mod gpu;
 #[cfg(test)]
 mod layout_tests;
 mod lens;
+mod look;
 mod march;
 mod model;
 mod order;
@@ -51,6 +52,7 @@ mod tables;
 mod tiles;
 
 pub use error::RenderError;
+pub use look::Spent;
 pub use model::Model;
 pub use resources::Resources;
 pub use stage::{Stage, Stages};
@@ -70,6 +72,7 @@ use crate::device_mesh::DeviceMesh;
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
 use crate::lens::Lens;
+use crate::look::Look;
 use crate::march::March;
 
 /// A picture and the time it took.
@@ -83,6 +86,8 @@ pub struct Frame {
     pub resources: Resources,
     /// How the cells were ordered.
     pub order: OrderReport,
+    /// The pieces that it took to keep to the error budget, where there are two fields or light.
+    pub spent: Option<Spent>,
     /// Where the picture may be wrong, found on the way.
     pub warnings: Vec<String>,
 }
@@ -95,6 +100,8 @@ struct Job<'a> {
     eye: EyeSpace,
     pieces: &'a [Piece],
     weights: Weights,
+    /// What the scene asks for beyond one field's transfer function.
+    look: Option<Look>,
     /// The cells to draw, nearest first.
     order: &'a [u32],
     /// Ranges of positions in `order`, ascending and apart, whose cells have no order among themselves: they are
@@ -175,8 +182,11 @@ impl Renderer {
         let (mesh, view) = (model.mesh(), &plan.view);
         let mut order = order::order(&self.orderer, model, plan, &mut stages);
         let device_mesh = stages.run("prepare", || DeviceMesh::new(mesh, &scene.scalar));
-        let transfer = scene.transfer().ok_or(RenderError::Bivariate)?;
-        let pieces = pieces(transfer, scene.scalar.range, 1.0 / (scene.unit_distance * device_mesh.scale));
+        let extinction = 1.0 / (scene.unit_distance * device_mesh.scale);
+        // Of a function of two fields one piece of nothing.
+        let pieces = scene
+            .transfer()
+            .map_or_else(|| vec![Piece::default()], |transfer| pieces(transfer, scene.scalar.range, extinction));
         let weights = match plan.integrator {
             Integrator::Average => Weights::Average,
             // The CPU back end has these two: the plan sees to it.
@@ -190,6 +200,11 @@ impl Renderer {
         } else {
             (std::mem::take(&mut order.cells), Vec::new())
         };
+        let eye = EyeSpace::new(view, mesh, &device_mesh);
+        let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), extinction)?;
+        if plan.backend == Backend::Gpu && look.is_some() {
+            return Err(RenderError::CpuOnly);
+        }
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
             .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
@@ -197,9 +212,10 @@ impl Renderer {
             mesh: &device_mesh,
             scalar: &scene.scalar,
             view: lens.view,
-            eye: EyeSpace::new(view, mesh, &device_mesh),
+            eye,
             pieces: &pieces,
             weights,
+            look,
             order: &cells,
             groups: &order.groups,
             max_error: scene.method.max_error,
@@ -211,16 +227,18 @@ impl Renderer {
             opaque: (1.0 - OPAQUE_SHARE * scene.method.max_error.clamp(0.0, 1.0)) as f32,
             size: view.size,
         };
+        let mut spent = None;
         let (pixels, resources) = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
-                let pixels = tiles::draw(&job, &mut stages);
+                let (pixels, pieces) = tiles::draw(&job, &mut stages);
+                spent = job.look.is_some().then_some(pieces);
                 (pixels, Resources { cells: cells.len(), ..Resources::default() })
             }
         };
         let warnings = order::doubts(&order, plan);
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
-        Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report, warnings })
+        Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report, spent, warnings })
     }
 }
 

@@ -3,13 +3,16 @@
 //! Cells are set up in double precision ([`record`]), binned into tiles of pixels in their order ([`bins`]), and every
 //! tile walks its cells front to back with a vector of pixels at a time ([`walk`]): a block's rays are met with a
 //! cell's planes ([`block`]), and the segments are integrated exactly ([`ramp`]). Where cells have no order a tile
-//! sorts its fragments by depth. A block whose pixels are opaque is left alone.
+//! sorts its fragments by depth. A block whose pixels are opaque is left alone. Where a scene looks at more than one
+//! scalar, its further fields are set up beside the records ([`further`]) and segments are shaded one by one
+//! ([`crate::look`]).
 //!
 //! The instruction set is chosen at run time. A picture is the same bit for bit every time and on any number of
 //! threads; on other instruction sets it may differ by roundings, where multiplications and additions are not fused.
 
 mod bins;
 mod block;
+mod further;
 mod ramp;
 mod record;
 #[cfg(test)]
@@ -23,6 +26,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
 
 use crate::Job;
+use crate::look::Spent;
 use crate::stage::Stages;
 use bins::{Bins, TILE};
 use ramp::Ramp;
@@ -35,45 +39,57 @@ const BATCH: usize = 1 << 20;
 /// Share of the allowed error that may lie behind pixels that count as opaque.
 const HIDDEN_ERROR: f64 = 1e-3;
 
-/// Draws a picture: premultiplied pixels, top row first.
-pub(crate) fn draw(job: &Job, stages: &mut Stages) -> Vec<[f32; 4]> {
+/// Draws a picture: premultiplied pixels, top row first; and what segments took that were shaded one by one.
+pub(crate) fn draw(job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     draw_on(Level::new(), job, stages)
 }
 
 /// The same with a given instruction set.
-fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> Vec<[f32; 4]> {
+fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     let eye = &job.eye;
     let ramps: Vec<Ramp> = job.pieces.iter().map(Ramp::new).collect();
     let brightest =
         job.pieces.iter().flat_map(|p| [p.low, p.high]).flat_map(|c| [c[0], c[1], c[2]]).fold(1.0, f32::max);
+    let brightest = job.look.as_ref().map_or(brightest, |look| brightest.max(look.brightest as f32));
     let light = Light {
         ramps: &ramps,
         model: job.weights,
         pixel: if eye.orthographic { 0.0 } else { eye.pixel as f32 },
         middle: eye.middle.map(|m| m as f32),
         opaque: (1.0 - HIDDEN_ERROR * job.max_error / f64::from(brightest)) as f32,
+        look: job.look.as_ref(),
+        further: &[],
     };
     let points = stages.run("project", || record::points(job.mesh, job.scalar, eye));
     let set_up = SetUp { mesh: job.mesh, points: &points, eye, pieces: job.pieces, size: job.size };
     let columns = bins::tiles(job.size)[0] as usize;
+    let fields = job.look.as_ref().map_or(&[][..], |look| &look.further);
     let mut pixels = vec![[0.0; 4]; job.size[0] as usize * job.size[1] as usize];
+    let mut spent = Spent::default();
     for batch in batches(job.order.len(), job.groups) {
-        let chunks = stages.run("set up", || set_up.chunks(level, &job.order[batch.clone()]));
+        let cells = &job.order[batch.clone()];
+        let (chunks, further) = stages.run("set up", || {
+            let chunks = set_up.chunks(level, cells);
+            let further = further::further(&set_up, fields, cells, &chunks);
+            (chunks, further)
+        });
+        let light = Light { further: &further, ..light };
         let bins = stages.run("bin", || Bins::new(&chunks, job.size));
         let groups = groups_in(job.groups, &batch);
-        stages.run("draw", || {
-            rows_of_tiles(&mut pixels, job.size).into_par_iter().enumerate().for_each(|(index, mut rows)| {
+        let drawn = stages.run("draw", || {
+            rows_of_tiles(&mut pixels, job.size).into_par_iter().enumerate().map(|(index, mut rows)| {
                 let origin = [index % columns, index / columns].map(|i| i as u32 * TILE);
                 let cells = bins.of(index);
                 if eye.orthographic {
-                    dispatch!(level, simd => draw_tile::<_, true>(simd, &light, origin, &chunks, cells, &groups, &mut rows));
+                    dispatch!(level, simd => draw_tile::<_, true>(simd, &light, origin, &chunks, cells, &groups, &mut rows))
                 } else {
-                    dispatch!(level, simd => draw_tile::<_, false>(simd, &light, origin, &chunks, cells, &groups, &mut rows));
+                    dispatch!(level, simd => draw_tile::<_, false>(simd, &light, origin, &chunks, cells, &groups, &mut rows))
                 }
-            });
+            }).reduce(Spent::default, Spent::and)
         });
+        spent = spent.and(drawn);
     }
-    pixels
+    (pixels, spent)
 }
 
 /// For each tile its rows of the picture.
@@ -120,7 +136,7 @@ fn draw_tile<S: Simd, const ORTHOGRAPHIC: bool>(
     cells: &[u32],
     groups: &[Range<u32>],
     rows: &mut [&mut [[f32; 4]]],
-) {
+) -> Spent {
     let mut walk = Walk::new(simd, light, origin, rows);
     let mut rest = cells;
     let mut groups = groups;
@@ -143,4 +159,5 @@ fn draw_tile<S: Simd, const ORTHOGRAPHIC: bool>(
         }
     }
     walk.finish(rows);
+    walk.spent
 }

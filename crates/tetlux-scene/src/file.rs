@@ -280,12 +280,17 @@ pub fn gradient_magnitude(scalar: &ScalarField, gradients: &[DVec3]) -> ScalarFi
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));
     ScalarField {
-        name: format!("gradient magnitude of {}", scalar.name),
+        name: gradient_name(scalar),
         location: Location::Point,
         range: [low.min(high), high],
         missing: values.iter().filter(|value| !value.is_finite()).count(),
         values,
     }
+}
+
+/// The name of [`gradient_magnitude`]'s field.
+pub(crate) fn gradient_name(scalar: &ScalarField) -> String {
+    format!("gradient magnitude of {}", scalar.name)
 }
 
 fn image_function(path: &Path, range: [[f64; 2]; 2], max_opacity: f64) -> Result<ImageFunction, SceneError> {

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use tetlux_mesh::TetMesh;
+use tetlux_mesh::{ScalarField, TetMesh};
 use tetlux_optics::widget::Rectangle;
 
+use crate::file::gradient_name;
 use crate::reason::{of_classification, of_integrator, of_interpolation, of_projection, of_table_precision, of_target};
 use crate::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError,
@@ -76,12 +77,19 @@ impl Plan {
     /// A camera that sees nothing, or a combination of backend, order and device that cannot be.
     pub fn new(scene: &Scene, mesh: &TetMesh, device: Option<&Device>) -> Result<Plan, SceneError> {
         let view = scene.camera.view(scene.size)?;
-        drawable(scene)?;
         let mut warnings = Vec::new();
         if let Some(reason) = scene.method.refusal() {
             return Err(SceneError::Method(reason));
         }
-        let (backend, backend_reason) = choose_backend(&scene.method, device)?;
+        if scene.classification.is_bivariate() && scene.method.integrator == Integrator::Average {
+            return Err(SceneError::Method(
+                "integrator \"average\" is for one field with a transfer function: use direct".into(),
+            ));
+        }
+        let (backend, backend_reason) = match cpu_only(scene) {
+            Some(what) => choose_cpu(&scene.method, what)?,
+            None => choose_backend(&scene.method, device)?,
+        };
         let projection = choose_projection(&scene.method, backend, device);
         let (order, order_reason) = choose_order(scene, projection);
         let (target, target_reason) = choose_target(scene.method.target, projection, device);
@@ -105,7 +113,7 @@ impl Plan {
                 reasons.push(("interpolation", says(decided.interpolation, of_interpolation)));
             }
         }
-        reasons.push(("integrator", says(decided.integrator, of_integrator)));
+        reasons.push(("integrator", integral_of(scene, decided.integrator)));
         if tables {
             reasons.push(("table", says(table_precision, of_table_precision)));
         }
@@ -113,6 +121,7 @@ impl Plan {
             reasons.push(("classification", says(decided.classification, of_classification)));
             reasons.push(("target", format!("{target}: {target_reason}")));
         }
+        reasons.push(("gradients", of_gradients(scene).into()));
         reasons.push((
             "cells",
             format!(
@@ -144,6 +153,19 @@ impl Plan {
     }
 }
 
+/// The integral inside a cell and its error.
+fn integral_of(scene: &Scene, integrator: Integrator) -> String {
+    use tetlux_optics::Classification::{Image, OneField, TwoFields, Widgets};
+    let budget = scene.method.max_error;
+    let color = match &scene.classification {
+        OneField(_) => says(integrator, of_integrator),
+        TwoFields(_) => format!("{integrator}: cut at the nodes of both fields, relative error 1e-5"),
+        Widgets(_) | Image(_) => format!("adaptive: opacity exact, colour within the budget of {budget:e}"),
+    };
+    let lit = scene.lighting.as_ref().map_or(String::new(), |_| format!("; light in pieces by {budget:e} too"));
+    color + &lit
+}
+
 /// A choice and its reason.
 fn says<T: Copy + std::fmt::Display>(choice: T, reason: fn(T) -> &'static str) -> String {
     format!("{choice}: {}", reason(choice))
@@ -158,17 +180,37 @@ impl std::fmt::Display for Plan {
     }
 }
 
-/// What no renderer draws yet is refused.
-fn drawable(scene: &Scene) -> Result<(), SceneError> {
+/// What of a scene the CPU back end alone draws, in words.
+fn cpu_only(scene: &Scene) -> Option<&'static str> {
     if scene.classification.is_bivariate() {
-        return Err(SceneError::Method(
-            "no back end draws classification by two fields yet: use one field with a transfer function".into(),
-        ));
+        return Some("classification by two fields");
     }
-    if scene.lighting.is_some() {
-        return Err(SceneError::Method("no back end draws light yet: leave out [light]".into()));
+    scene.lighting.is_some().then_some("light")
+}
+
+/// The back end of a scene that the CPU's alone draws.
+fn choose_cpu(method: &Method, what: &str) -> Result<(Backend, String), SceneError> {
+    if method.backend == Backend::Gpu {
+        return Err(SceneError::Method(format!("{what} is drawn by the CPU back end alone: use --backend cpu")));
     }
-    Ok(())
+    if let Some(other) = method.gpu_only() {
+        return Err(SceneError::Method(format!(
+            "{what} is drawn by the CPU back end alone, and {other} is a method of graphics adapters: leave that out"
+        )));
+    }
+    let why = if method.backend == Backend::Cpu { "as asked".into() } else { format!("{what} needs it") };
+    Ok((Backend::Cpu, why))
+}
+
+/// What gradients are computed for, or that they are not.
+fn of_gradients(scene: &Scene) -> &'static str {
+    let of_scalar = |second: &ScalarField| second.name == gradient_name(&scene.scalar);
+    match (scene.lighting.is_some(), scene.second.as_ref().is_some_and(of_scalar)) {
+        (true, true) => "computed: their magnitude is the second scalar, and light takes them for normals",
+        (true, false) => "computed: light takes them for normals",
+        (false, true) => "computed: their magnitude is the second scalar",
+        (false, false) => "skipped: nothing asks for them",
+    }
 }
 
 fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, String), SceneError> {

@@ -33,6 +33,9 @@ pub(crate) struct Segments<S: Simd> {
     pub(crate) length: S::f32s,
     /// Depth of the middle from the mesh's origin.
     pub(crate) depth: S::f32s,
+    /// The middle's depth from `z_ref` and the extent in depth, both over `z_ref` in perspective.
+    pub(crate) middle: S::f32s,
+    pub(crate) extent: S::f32s,
 }
 
 /// The segments of the rays through some pixels, counted from the middle of the cell's box, `stretch` the rays' length for a depth
@@ -90,5 +93,7 @@ pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(
         back: (middle_scalar + rise).max(0.0).min(record.range),
         length: extent * stretch * scale,
         depth: S::f32s::splat(simd, record.level) - middle * scale,
+        middle,
+        extent,
     })
 }

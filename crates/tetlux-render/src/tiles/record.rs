@@ -25,7 +25,7 @@ use crate::tiles::vector::{Vector, dot};
 #[derive(Clone, Copy)]
 pub(crate) struct Point {
     /// Relative to the mesh's origin, in the axes of eye space.
-    frame: DVec3,
+    pub(crate) frame: DVec3,
     /// Pixel position; of use only in front of the near plane.
     pixel: [f32; 2],
     /// Normalised; 0 for cell data.
@@ -83,7 +83,7 @@ const NUDGE: [f64; 2] = [5.9e-7, 3.3e-7];
 const NUDGE_SIDE: f64 = 128.0;
 
 /// Coefficients are limited to this value: sums and products with pixel positions stay finite.
-const STEEPEST: f64 = 1e20;
+pub(crate) const STEEPEST: f64 = 1e20;
 
 /// The mesh's vertices as seen.
 pub(crate) fn points(mesh: &DeviceMesh, scalar: &ScalarField, eye: &EyeSpace) -> Vec<Point> {

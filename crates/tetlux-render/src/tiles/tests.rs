@@ -51,6 +51,7 @@ impl Drawing {
             eye: EyeSpace::new(&self.view, &self.mesh, &self.device),
             pieces: &self.pieces(),
             weights: Weights::Direct,
+            look: None,
             order,
             groups,
             max_error,
@@ -62,7 +63,7 @@ impl Drawing {
             opaque: 1.0,
             size: self.view.size,
         };
-        draw_on(level, &job, &mut Stages::default())
+        draw_on(level, &job, &mut Stages::default()).0
     }
 
     /// Every pixel sorted.

@@ -5,8 +5,10 @@ use tetlux_optics::transfer_f32::Weights;
 
 use super::bins::TILE;
 use super::block::{Segments, WIDTH, places, segments};
+use super::further::{Inside, Linear};
 use super::ramp::{Pixels, Ramp, add_cut_segment, add_segment, only};
 use super::record::{Chunk, Record, at};
+use crate::look::{Ends, Look, Segment, Spent};
 
 /// Pixels of a tile.
 pub(crate) const PIXELS: usize = (TILE * TILE) as usize;
@@ -32,6 +34,7 @@ const AHEAD: usize = 32;
 const FEW: u32 = 2;
 
 /// What all tiles of a picture have in common.
+#[derive(Clone, Copy)]
 pub(crate) struct Light<'a> {
     pub(crate) ramps: &'a [Ramp],
     pub(crate) model: Weights,
@@ -40,6 +43,9 @@ pub(crate) struct Light<'a> {
     pub(crate) middle: [f32; 2],
     /// A pixel of this alpha is done.
     pub(crate) opaque: f32,
+    /// What there is beyond one field's transfer function, and the further fields of the cells.
+    pub(crate) look: Option<&'a Look>,
+    pub(crate) further: &'a [Linear],
 }
 
 /// A tile being drawn.
@@ -57,6 +63,7 @@ pub(crate) struct Walk<'a, S: Simd> {
     /// Of a run of cells without order: the blocks that each may cover, and a block's fragments. Kept for the next run.
     masks: Vec<u64>,
     fragments: Vec<Fragment<S>>,
+    pub(crate) spent: Spent,
 }
 
 /// Where in a tile's vectors of so many lanes the pixel at (x, y) is.
@@ -72,16 +79,9 @@ impl<'a, S: Simd> Walk<'a, S> {
         let lanes = S::f32s::LEN;
         let blocks = PIXELS / lanes;
         let alive = u64::MAX >> (64 - blocks);
-        let mut walk = Walk {
-            simd,
-            light,
-            origin,
-            tile: [[0.0; PIXELS]; 4],
-            alive,
-            stretch: [1.0; PIXELS],
-            masks: Vec::new(),
-            fragments: Vec::new(),
-        };
+        let (tile, stretch) = ([[0.0; PIXELS]; 4], [1.0; PIXELS]);
+        let (masks, fragments, spent) = (Vec::new(), Vec::new(), Spent::default());
+        let mut walk = Walk { simd, light, origin, tile, alive, stretch, masks, fragments, spent };
         for (y, row) in rows.iter().enumerate() {
             for (x, pixel) in row.iter().enumerate() {
                 for i in 0..4 {
@@ -216,7 +216,11 @@ impl<'a, S: Simd> Walk<'a, S> {
                     let (places, stretch) = (self.places(block, x, y), self.load(&self.stretch, block));
                     if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch) {
                         let mut pixels = self.pixels(block);
-                        self.integrate(record, &segments, &mut pixels);
+                        if self.light.look.is_some() {
+                            self.shade(i, record, &segments, (block, places), &mut pixels);
+                        } else {
+                            self.integrate(record, &segments, &mut pixels);
+                        }
                         self.store(block, &pixels);
                     }
                 }
@@ -241,6 +245,105 @@ impl<'a, S: Simd> Walk<'a, S> {
             add_cut_segment(self.simd, ramps, record.base, self.light.model, front, back, length, pixels);
         }
     }
+}
+
+/// Most lanes of a vector.
+const LANES: usize = 16;
+
+/// A block's segments, lane by lane.
+#[derive(Default)]
+struct Lanes {
+    front: [f32; LANES],
+    back: [f32; LANES],
+    length: [f32; LANES],
+    middle: [f32; LANES],
+    extent: [f32; LANES],
+    /// The pixels, from the middle of the cell's box, and from the picture's.
+    place: [[f32; LANES]; 2],
+    pixel: [[f32; LANES]; 2],
+    stretch: [f32; LANES],
+}
+
+impl<S: Simd> Walk<'_, S> {
+    /// Composites segments of more than one field behind what is there, one pixel at a time.
+    #[cold]
+    #[inline(never)]
+    fn shade(
+        &mut self,
+        cell: u32,
+        record: &Record,
+        segments: &Segments<S>,
+        (block, places): (usize, (S::f32s, S::f32s)),
+        pixels: &mut Pixels<S>,
+    ) {
+        let Some(look) = self.light.look else { return };
+        let count = S::f32s::LEN;
+        let [x, y] = [0, 1].map(|axis| self.origin[axis] as f32 + 0.5 - self.light.middle[axis]);
+        let pixel = self.places(block, x, y);
+        let mut lanes = Lanes::default();
+        let [x, y] = &mut lanes.place;
+        let [across, down] = &mut lanes.pixel;
+        for (values, to) in [
+            (segments.front, &mut lanes.front),
+            (segments.back, &mut lanes.back),
+            (segments.length, &mut lanes.length),
+            (segments.middle, &mut lanes.middle),
+            (segments.extent, &mut lanes.extent),
+            (places.0, x),
+            (places.1, y),
+            (pixel.0, across),
+            (pixel.1, down),
+            (self.load(&self.stretch, block), &mut lanes.stretch),
+        ] {
+            values.store_slice(&mut to[..count]);
+        }
+        let mut colors = [[0.0; LANES]; 4];
+        for i in 0..4 {
+            pixels[i].store_slice(&mut colors[i][..count]);
+        }
+        let fields = look.further.len();
+        let further = &self.light.further[cell as usize * fields..][..fields];
+        let spent = shade_lanes(look, self.light, record, further, &lanes, count, &mut colors);
+        self.spent = self.spent.and(spent);
+        for i in 0..4 {
+            pixels[i] = S::f32s::from_slice(self.simd, &colors[i][..count]);
+        }
+    }
+}
+
+/// Composites the segments of so many lanes behind `colors`, but for pixels that are done.
+fn shade_lanes(
+    look: &Look,
+    light: &Light,
+    record: &Record,
+    further: &[Linear],
+    lanes: &Lanes,
+    count: usize,
+    colors: &mut [[f32; LANES]; 4],
+) -> Spent {
+    let mut spent = Spent::default();
+    let orthographic = light.pixel == 0.0;
+    for i in (0..count).filter(|&i| lanes.length[i] > 0.0) {
+        if colors[3][i] >= light.opaque {
+            continue;
+        }
+        let place = lanes.place.map(|axis| axis[i]);
+        let inside = Inside { place, middle: lanes.middle[i], extent: lanes.extent[i] };
+        let first = [lanes.front[i], lanes.back[i]].map(|s| record.base + s);
+        let Ends { scalars: [front, back], gradients } =
+            look.values(first, further.iter().map(|field| field.ends(&inside, orthographic)));
+        let [x, y] = lanes.pixel.map(|axis| -axis[i] * light.pixel / lanes.stretch[i]);
+        let view = [x, y, -1.0 / lanes.stretch[i]];
+        let pieces = record.pieces.map(|piece| piece as usize);
+        let part = look.shade(&Segment { front, back, gradients, length: lanes.length[i], view, pieces });
+        let left = 1.0 - colors[3][i];
+        for channel in 0..4 {
+            colors[channel][i] += left * part.color[channel];
+        }
+        spent.segments += 1;
+        spent.pieces += u64::from(part.pieces);
+    }
+    spent
 }
 
 /// By how much a front face's plane is before a back face's, at most, in blocks whose first pixels are at (x, y).
@@ -299,7 +402,11 @@ impl<S: Simd> Walk<'_, S> {
                 let places = self.places(block, x, y);
                 if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch) {
                     let mut color = [S::f32s::splat(self.simd, 0.0); 4];
-                    self.integrate(record, &segments, &mut color);
+                    if self.light.look.is_some() {
+                        self.shade(i, record, &segments, (block, places), &mut color);
+                    } else {
+                        self.integrate(record, &segments, &mut color);
+                    }
                     // Where the ray misses the cell nothing has to move.
                     before = segments.length.simd_gt(0.0).select(segments.depth, before);
                     fragments.push(Fragment { depth: before, color });

@@ -1,0 +1,94 @@
+//! Further fields of the cells, for scenes that look at more than one scalar: linear along rays as the first is.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use tetlux_mesh::Location;
+
+use super::record::{CHUNK, Record, SetUp, at};
+use super::record::{Chunk, STEEPEST};
+use crate::device_mesh::NEGATIVE;
+use crate::look::Further;
+
+/// A field in a cell, as [`Record`] has its first.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Linear {
+    /// At depth `z_ref`, less `base`: (d/dx, d/dy, at the middle).
+    at: [f32; 3],
+    along: f32,
+    /// The cell's lowest value, and its highest less that.
+    base: f32,
+    range: f32,
+}
+
+/// Where a pixel's ray is inside a cell.
+#[derive(Clone, Copy)]
+pub(crate) struct Inside {
+    /// The pixel, counted from the middle of the cell's box.
+    pub(crate) place: [f32; 2],
+    /// The middle's depth from `z_ref` and the extent in depth, both over `z_ref` in perspective.
+    pub(crate) middle: f32,
+    pub(crate) extent: f32,
+}
+
+impl Linear {
+    /// The values at the front and at the back end.
+    pub(crate) fn ends(&self, inside: &Inside, orthographic: bool) -> [f32; 2] {
+        let [dx, dy, c] = self.at;
+        let here = inside.place[0] * dx + inside.place[1] * dy + c;
+        let gradient = if orthographic { self.along } else { here + self.along };
+        let (middle, rise) = (here - gradient * inside.middle, 0.5 * gradient * inside.extent);
+        [middle - rise, middle + rise].map(|value| self.base + value.max(0.0).min(self.range))
+    }
+}
+
+/// The further fields of cells that have been set up, one cell after another; none if there are none.
+pub(crate) fn further(set_up: &SetUp, fields: &[Further], cells: &[u32], chunks: &[Chunk]) -> Vec<Linear> {
+    if fields.is_empty() {
+        return Vec::new();
+    }
+    let mut all = vec![Linear::default(); cells.len() * fields.len()];
+    all.par_chunks_mut(CHUNK * fields.len()).enumerate().for_each(|(chunk, all)| {
+        for (i, linears) in all.chunks_mut(fields.len()).enumerate() {
+            let position = chunk * CHUNK + i;
+            let record = at(chunks, position as u32);
+            if record.first[0] < record.end[0] {
+                in_cell(set_up, fields, cells[position], record, linears);
+            }
+        }
+    });
+    all
+}
+
+fn in_cell(set_up: &SetUp, fields: &[Further], cell: u32, record: &Record, linears: &mut [Linear]) {
+    let (mesh, eye) = (set_up.mesh, set_up.eye);
+    let [a, b, c, d] = mesh.cells[cell as usize];
+    let vertices = [a & !NEGATIVE, b, c, d].map(|v| v as usize);
+    let frame = vertices.map(|v| set_up.points[v].frame);
+    let depth = frame.map(|p| p.z + eye.offset.z);
+    let farthest = depth[0].max(depth[1]).max(depth[2].max(depth[3])).max(eye.near);
+    let scale = if eye.orthographic { eye.pixel } else { farthest * eye.pixel };
+    let middle = record.middle();
+    let across = [0, 1].map(|axis| (f64::from(middle[axis]) + 0.5 - eye.middle[axis]) * scale);
+    let origin = DVec3::new(across[0], across[1], farthest);
+    let [e1, e2, e3] = [frame[1] - frame[0], frame[2] - frame[0], frame[3] - frame[0]];
+    let faces = [e2.cross(e3), e3.cross(e1), e1.cross(e2)];
+    let volume = e1.dot(faces[0]);
+    let inverse = if volume.abs() <= f64::MIN_POSITIVE { 0.0 } else { 1.0 / volume };
+    for (field, linear) in fields.iter().zip(linears) {
+        let values = match field.location {
+            Location::Point => vertices.map(|v| field.values[v]),
+            Location::Cell => [field.values[cell as usize]; 4],
+        };
+        let (least, most) = values.iter().fold((values[0], values[0]), |(l, m), &v| (l.min(v), m.max(v)));
+        // Single precision, as what is added to it.
+        let base = least as f32;
+        let s = values.map(|v| v - f64::from(base));
+        let rises = [s[1] - s[0], s[2] - s[0], s[3] - s[0]].map(|rise| rise * inverse);
+        let gradient = faces[0] * rises[0] + faces[1] * rises[1] + faces[2] * rises[2];
+        let here = s[0] + gradient.dot(origin - (frame[0] + eye.offset));
+        let along = if eye.orthographic { gradient.z } else { gradient.dot(origin) - here };
+        let [x, y, c, along] =
+            [gradient.x * scale, gradient.y * scale, here, along].map(|v| v.clamp(-STEEPEST, STEEPEST) as f32);
+        *linear = Linear { at: [x, y, c], along, base, range: (most - f64::from(base)).max(0.0) as f32 };
+    }
+}
