@@ -65,7 +65,7 @@ fn shapes() -> [(&'static str, Widget); 5] {
 }
 
 fn all_widgets() -> Classification {
-    Classification::Widgets(BivariateFunction { widgets: shapes()[..4].iter().map(|(_, w)| w.clone()).collect() })
+    Classification::Widgets(BivariateFunction { widgets: shapes()[..4].iter().map(|(_, w)| *w).collect() })
 }
 
 fn two_fields() -> Classification {
