@@ -77,7 +77,7 @@ pub(super) const CASES: &[Case] = &[
                 that the core's range is cut into: colours are lost, and rings appear.",
         setting: Setting { opacity: &[[0.0, 40.0], [0.25, 40.0], [0.3, 0.5], [0.9, 0.15], [1.8, 0.08]], ..HAZE },
         inset: [0.15, 0.3, 0.3],
-        gain: 2.5,
+        gain: 1.5,
         artifact: ("preint, u8", |m| {
             m.integrator = Integrator::Preint;
             m.table_precision = TablePrecision::U8;
@@ -160,13 +160,13 @@ pub(super) const CASES: &[Case] = &[
         name: "pre-integration",
         title: "Partial pre-integration",
         source: "Moreland and Angel 2004, figure 8",
-        shows: "A block whose outermost layer of cells fades from yellow to blue, four optical depths deep. The mean luminance \
+        shows: "A block whose outermost layer of cells fades from yellow to blue, ten optical depths deep. The mean luminance \
                 of a segment takes as much of its far end as of its near one: blue bleeds through the yellow.",
         setting: Setting {
             mesh: cube::<5>,
             field: |p| p.abs().max_element(),
             color: &[[0.0, 0.02, 0.1, 1.0], [0.6, 0.02, 0.1, 1.0], [1.0, 1.0, 0.75, 0.02]],
-            opacity: &[[0.0, 10.0], [1.0, 10.0]],
+            opacity: &[[0.0, 25.0], [1.0, 25.0]],
             unit_distance: 1.0,
             eye: [2.6, -4.8, 2.2],
             focus: [0.0, 0.0, 0.0],
@@ -180,7 +180,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "order",
         title: "Order of cells",
-        source: "the centroid order of every published projection; exact order: Williams 1992, Cook et al. 2004",
+        source: "centroids as in Shirley and Tuchman 1990; exact order after Williams 1992 and Cook et al. 2004",
         shows: "Stripes across cells twenty times as long as wide, as they are near walls. A far cell whose centroid is \
                 nearer is drawn over a near one.",
         setting: Setting {
@@ -199,8 +199,8 @@ pub(super) const CASES: &[Case] = &[
             focus: [0.0, 0.0, 0.0],
             view_angle: 34.0,
         },
-        inset: [0.4, 0.4, 0.25],
-        gain: 1.2,
+        inset: [0.08, 0.4, 0.25],
+        gain: 1.5,
         artifact: ("centroid", |m| m.order = Order::Centroid),
         cure: ("exact", |m| m.order = Order::Exact),
     },
