@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use serde::Serialize;
 use tetlux_image::{Encoding, Image, Metrics, compare, difference_picture, read_exr, write_png};
-use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray};
 use tetlux_render::Renderer;
 use tetlux_scene::{Backend, Order, Plan};
 
 use crate::input::{Input, SceneArgs, stem};
 use crate::report::{OrderingFaults, Report, create_folder, print_metrics, write_json};
-use crate::{progress, render};
+use crate::{progress, render, truth};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -79,7 +78,7 @@ fn compare_scene(args: &Args, scene: Option<&Path>) -> Result<bool> {
         Report::new(&input, plan, adapter.as_deref(), &[]).print_plan(plan);
     })?;
     let mut stages = tetlux_render::Stages::default();
-    let reference = stages.run("reference", || reference(&input, &plan))?;
+    let reference = stages.run("reference", || truth::image(&input, &plan.view, [0.0; 2]))?;
     let metrics = compare(&reference, &frame.image, budget)?;
 
     let mut all = frame.stages.clone();
@@ -119,29 +118,6 @@ fn verdict(metrics: &Metrics, budget: f64) -> bool {
     let within = metrics.over == 0 && metrics.non_finite == 0;
     say!("{} the error budget of {budget:.1e}", if within { "within" } else { "PAST" });
     within
-}
-
-/// The picture that the f64 reference makes of the same rays.
-fn reference(input: &Input, plan: &Plan) -> Result<Image> {
-    let caster = Caster::new(tetlux_reference::Scene {
-        mesh: &input.mesh,
-        scalar: &input.scene.scalar,
-        second: input.scene.second.as_ref(),
-        classification: &input.scene.classification,
-        lighting: input.scene.lighting.as_ref().map(|lighting| (&lighting.light, &lighting.gradients[..])),
-        unit_distance: input.scene.unit_distance,
-        tolerance: DEFAULT_TOLERANCE,
-    })?;
-    let view = &plan.view;
-    let ray = |x: u32, y: u32| {
-        let (origin, direction) = view.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
-        Ray { origin, direction, start: view.near, end: f64::INFINITY }
-    };
-    let bar = progress::bar("reference", view.size[1]);
-    let pixels = caster.render(view.size[0], view.size[1], ray, |rows| bar.set_position(u64::from(rows)));
-    bar.finish_and_clear();
-    let pixels = pixels.into_iter().map(|p| p.map(|c| c as f32)).collect();
-    Ok(Image::from_pixels(view.size[0], view.size[1], pixels)?)
 }
 
 fn write_difference(a: &Image, b: &Image, path: &Path) -> Result<String> {

@@ -10,12 +10,15 @@ mod histogram;
 mod info;
 mod input;
 mod mesh_args;
+mod methods;
 mod order;
 mod progress;
 mod render;
 mod report;
 mod tables;
 mod test;
+mod testbed;
+mod truth;
 
 use std::process::ExitCode;
 
@@ -52,6 +55,12 @@ enum Command {
     /// Judge visibility orders along rays: inversions, cycles, times, and what they do to the picture
     #[command(after_help = order::EXAMPLES)]
     Order(order::Args),
+    /// Render the literature's artifacts beside their cures, and write a page of them with their errors
+    #[command(after_help = testbed::EXAMPLES)]
+    Testbed(testbed::Args),
+    /// Measure every method by name: its error and its cost, as a table in a page
+    #[command(after_help = methods::EXAMPLES)]
+    Methods(methods::Args),
     /// Run format, lints, all tests and the documentation; installs a Vulkan driver on Debian if there is none
     Test,
 }
@@ -65,6 +74,8 @@ fn main() -> ExitCode {
         Command::Info(args) => info::run(&args).map(|()| true),
         Command::Cache(args) => cache::run(&args).map(|()| true),
         Command::Order(args) => order::run(&args),
+        Command::Testbed(args) => testbed::run(&args).map(|()| true),
+        Command::Methods(args) => methods::run(&args).map(|()| true),
         Command::Test => test::run().map(|()| true),
     };
     match result {

@@ -225,7 +225,7 @@ fn pictures(
     let Some(stem) = path.file_stem() else { bail!("{}: names no file to write", path.display()) };
     create_folder(path)?;
     let pixels = (0..sampling.size[1]).flat_map(|j| (0..sampling.size[0]).map(move |i| (i, j)));
-    let rays: Vec<Ray> = pixels.map(|(i, j)| ray(sampling, i, j)).collect();
+    let rays: Vec<Ray> = pixels.map(|(i, j)| ray(sampling, [i, j], [0.0; 2])).collect();
     let found = verifier.verify_all(orders, &rays, Pairs::Adjacent);
     let first = along::first_cells(verifier, &rays);
     let mut files = Vec::new();

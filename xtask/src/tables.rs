@@ -28,3 +28,16 @@ pub(crate) fn load(input: &Input, plan: &Plan) -> Result<Vec<Arc<Table>>> {
     };
     table_specs(&input.scene, &input.mesh, plan).iter().map(load).collect()
 }
+
+/// The same, for programs that are to run at once: a table that is not stored is built for this run.
+pub(crate) fn load_or_build(input: &Input, plan: &Plan) -> Result<Vec<Arc<Table>>> {
+    let store = Store::new(PathBuf::from(FOLDER));
+    let load = |spec: &TableSpec| -> Result<Arc<Table>> {
+        let stored = store.path(spec).exists().then(|| store.read(spec)).transpose()?;
+        Ok(Arc::new(match stored {
+            Some(stored) => stored.table,
+            None => progress::during("building tables", || Table::build(spec))?,
+        }))
+    };
+    table_specs(&input.scene, &input.mesh, plan).iter().map(load).collect()
+}

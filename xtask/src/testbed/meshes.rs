@@ -1,0 +1,87 @@
+//! Procedural meshes and scenes, in a line each.
+
+use anyhow::{Context, Result};
+use glam::DVec3;
+use tetlux_mesh::procedural::{Parts, Split, cuboid, grid};
+use tetlux_mesh::{Component, Field, TetMesh};
+use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
+use tetlux_scene::{Camera, Method, Projection, Scene};
+
+use crate::input::Input;
+
+const FIELD: &str = "s";
+
+/// A mesh with a function of the position, how it glows, and from where it is seen.
+pub(crate) struct Setting {
+    pub(crate) mesh: fn() -> Parts,
+    pub(crate) field: fn(DVec3) -> f64,
+    /// Scalar, red, green, blue.
+    pub(crate) color: &'static [[f64; 4]],
+    /// Scalar, opacity.
+    pub(crate) opacity: &'static [[f64; 2]],
+    pub(crate) unit_distance: f64,
+    /// The eye; it looks at `focus`.
+    pub(crate) eye: [f64; 3],
+    pub(crate) focus: [f64; 3],
+    pub(crate) view_angle: f64,
+}
+
+impl Setting {
+    pub(crate) fn input(&self, name: &str, title: &str, side: u32) -> Result<Input> {
+        let parts = (self.mesh)();
+        let field = Field::point(FIELD, 1, parts.sample(self.field));
+        let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![field]).context("a procedural mesh")?;
+        let transfer = TransferFunction::new(
+            self.color.iter().map(|&[s, r, g, b]| ColorNode { s, rgb: [r, g, b] }).collect(),
+            self.opacity.iter().map(|&[s, opacity]| OpacityNode { s, opacity }).collect(),
+        )?;
+        let scene = Scene {
+            scalar: mesh.scalar(FIELD, Component::Magnitude)?,
+            second: None,
+            classification: tetlux_optics::Classification::OneField(transfer),
+            lighting: None,
+            unit_distance: self.unit_distance,
+            camera: Camera {
+                position: self.eye.into(),
+                focal_point: self.focus.into(),
+                view_up: DVec3::Z,
+                projection: Projection::Perspective { view_angle: self.view_angle },
+                near: 0.0,
+            },
+            size: [side; 2],
+            background: [0.0; 3],
+            method: Method::default(),
+        };
+        Ok(Input { name: name.into(), title: title.into(), mesh, scene, display_space: false, extras: None })
+    }
+}
+
+/// The cube from -1 to 1 of so many hexahedra a side.
+pub(crate) fn cube<const N: usize>() -> Parts {
+    cuboid([N; 3], Split::Six, [DVec3::NEG_ONE, DVec3::ONE])
+}
+
+/// The cube from -1 to 1 of long cells: one along x, 20 along y and z.
+pub(crate) fn long_cells() -> Parts {
+    cuboid([1, 20, 20], Split::Six, [DVec3::NEG_ONE, DVec3::ONE])
+}
+
+/// Spacing in the middle of the graded cube over that at its surface.
+const GRADING: f64 = 1e-5;
+/// Hexahedra from its middle to its surface.
+const GRADED: usize = 10;
+
+/// The cube from -1 to 1, its spacings growing from the middle outwards by the same factor each: edges from 1e-5 to 1.
+pub(crate) fn graded_cube() -> Parts {
+    let place = |u: f64| {
+        let steps = ((2.0 * u - 1.0) * GRADED as f64).round();
+        let growth = GRADING.powf(-1.0 / (GRADED as f64 - 1.0));
+        steps.signum() * (growth.powf(steps.abs()) - 1.0) / (growth.powf(GRADED as f64) - 1.0)
+    };
+    grid([2 * GRADED; 3], Split::Six, |u| DVec3::new(place(u.x), place(u.y), place(u.z)))
+}
+
+/// The distance from the middle on a logarithmic scale: 0 there, 1 at distance 1.
+pub(crate) fn log_radius(p: DVec3) -> f64 {
+    (p.length() / GRADING).ln_1p() / GRADING.recip().ln_1p()
+}
