@@ -462,8 +462,12 @@ fn a_histogram_shows_two_fields_and_tells_how_many_bands_they_bear() {
     let out = folder.path().join("out");
     assert!(fs::read_to_string(out.join("widgets-histogram.svg")).unwrap().contains("ellipse"));
     assert!(out.join("widgets-histogram.png").exists());
-    // No renderer draws it yet: said before anything is written.
-    assert_fails(&run(folder.path(), &["render", "widgets.toml"]), &["two fields"]);
+    // The CPU back end draws it; another is refused before anything is written.
+    let drawn = run(folder.path(), &["render", "widgets.toml", "--output", "drawn.png"]);
+    assert!(drawn.status.success() && folder.path().join("drawn.png").exists(), "{}", stderr(&drawn));
+    let refused = run(folder.path(), &["render", "widgets.toml", "--backend", "gpu", "--output", "refused.png"]);
+    assert_fails(&refused, &["--backend cpu"]);
+    assert!(!folder.path().join("refused.png").exists());
     // One field is shown over its gradient; impossible ranges are refused.
     let output = run(folder.path(), &["histogram", "scene.toml"]);
     assert!(stdout(&output).contains("gradient magnitude of heat"), "{}", stdout(&output));
@@ -483,8 +487,12 @@ fn info_tells_how_many_bands_a_field_bears() {
 #[test]
 fn a_second_field_may_be_given_by_flag() {
     let folder = folder();
-    // Two fields are refused by the plan, hence were taken; on a scene that has none of them the flag is at fault.
-    assert_fails(&run(folder.path(), &["render", "scene.toml", "--opacity-field", "flow"]), &["two fields"]);
+    let one = run(folder.path(), &["render", "scene.toml", "--output", "one.png"]);
+    let two = run(folder.path(), &["render", "scene.toml", "--opacity-field", "flow", "--output", "two.png"]);
+    assert!(one.status.success() && two.status.success(), "{}{}", stderr(&one), stderr(&two));
+    let [one, two] = ["one.exr", "two.exr"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    assert_ne!(one, two, "the opacity is another field's");
+    // On a scene that has no use for it the flag is at fault.
     assert_fails(&run(folder.path(), &["render", "scene.toml", "--second-field", "flow"]), &["--opacity-field"]);
     fs::write(folder.path().join("widgets.toml"), WIDGETS).unwrap();
     assert_fails(&run(folder.path(), &["render", "widgets.toml", "--opacity-field", "flow"]), &["--second-field"]);
