@@ -97,6 +97,8 @@ pub(crate) struct Input {
     pub(crate) display_space: bool,
     /// What is kept beside the mesh between runs.
     pub(crate) extras: Option<Extras>,
+    /// The integrator is one of the command line, not of the scene.
+    pub(crate) integrator_forced: bool,
 }
 
 /// Under which the facts of a mesh are kept beside it.
@@ -180,11 +182,20 @@ impl SceneArgs {
 
     /// A scene, which flags have overridden, on a mesh.
     pub(crate) fn bind(&self, name: String, file: SceneFile, mesh: TetMesh) -> Result<Input> {
+        let integrator_forced = self.integrator.is_some();
         let mut scene = file.scene(&mesh, self.camera)?;
         if let Some(parallel_scale) = self.parallel_scale {
             scene.camera.projection = Projection::Orthographic { parallel_scale };
         }
-        Ok(Input { name, title: file.title, mesh, scene, display_space: file.display_space, extras: None })
+        Ok(Input {
+            name,
+            title: file.title,
+            mesh,
+            scene,
+            display_space: file.display_space,
+            extras: None,
+            integrator_forced,
+        })
     }
 
     /// Sets what flags say.

@@ -59,9 +59,10 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 /// Plans and renders; `announce` is told the plan before anything is drawn.
 pub(crate) fn render(input: &Input, renderer: &Renderer, announce: impl FnOnce(&Plan)) -> Result<(Plan, Frame)> {
     let mut stages = Stages::default();
-    let plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, renderer.device()))?;
+    let mut plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, renderer.device()))?;
+    let tables = stages.run("tables", || tables::load(input, &plan));
+    let tables = tables::or_directly(tables, input.integrator_forced, &mut plan)?;
     announce(&plan);
-    let tables = stages.run("tables", || tables::load(input, &plan))?;
     let model = input.model(&plan);
     let render = || renderer.render_with(&input.scene, &model, &plan, &tables);
     let mut frame = progress::during("rendering", render)?;

@@ -52,7 +52,15 @@ impl Setting {
             background: [0.0; 3],
             method: Method::default(),
         };
-        Ok(Input { name: name.into(), title: title.into(), mesh, scene, display_space: false, extras: None })
+        Ok(Input {
+            name: name.into(),
+            title: title.into(),
+            mesh,
+            scene,
+            display_space: false,
+            extras: None,
+            integrator_forced: true,
+        })
     }
 }
 
