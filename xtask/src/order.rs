@@ -13,7 +13,7 @@ use tetlux_mesh::{Field, TetMesh};
 use tetlux_optics::Classification;
 use tetlux_order::verify::{Pairs, Ray, Verifier};
 use tetlux_order::{Facts, Method, Order, Orderer, Sampling};
-use tetlux_render::Stages;
+use tetlux_render::{Stages, sampling};
 use tetlux_scene::{Camera, SceneFile, View};
 
 use self::along::Along;
@@ -172,11 +172,6 @@ fn views(args: &Args, input: &Input) -> Result<Vec<View>> {
             Ok(Camera::framing(input.mesh.bounds(), direction, up).view(scene.size)?)
         })
         .collect()
-}
-
-fn sampling(view: &View) -> Sampling {
-    let &View { eye, right, down, forward, size, pixel, orthographic, near } = view;
-    Sampling { eye, right, down, forward, pixel, size, near, orthographic }
 }
 
 /// The ray of a pixel, some pixels beside its centre; a whole line if rays are parallel.

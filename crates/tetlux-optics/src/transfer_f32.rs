@@ -81,7 +81,7 @@ fn piece_among(pieces: &[Piece], range: [usize; 2], s: f32) -> usize {
     low
 }
 
-fn classify(piece: &Piece, s: f32) -> [f32; 4] {
+pub(crate) fn classify(piece: &Piece, s: f32) -> [f32; 4] {
     let t = ((s - piece.s[0]) * piece.s[2]).clamp(0.0, 1.0);
     std::array::from_fn(|i| piece.low[i] + (piece.high[i] - piece.low[i]) * t)
 }

@@ -8,7 +8,7 @@ mod tests;
 
 use crate::segment_f32::weights_direct;
 use crate::transfer::{ColorNode, OpacityNode, TransferFunction};
-use crate::transfer_f32::{Piece, pieces};
+use crate::transfer_f32::{Piece, classify, piece_at, pieces};
 
 /// The pieces of the luminance over the first scalar and of the extinction over the second, as
 /// [`crate::transfer_f32::pieces`] makes them, each scalar's range mapped to [0, 1].
@@ -20,26 +20,6 @@ pub fn axes(transfer: &TransferFunction, ranges: [[f64; 2]; 2], extinction: f64)
     // Lists of a transfer function, each with one node of its own: both are transfer functions.
     [(color, ranges[0]), (opacity, ranges[1])]
         .map(|(function, range)| pieces(&function.unwrap_or_else(|_| transfer.clone()), range, extinction))
-}
-
-/// The last piece that begins at or below s.
-fn piece_at(pieces: &[Piece], s: f32) -> usize {
-    let mut low = 0;
-    let mut high = pieces.len();
-    while high - low > 1 {
-        let middle = (low + high) / 2;
-        if pieces[middle].s[0] <= s {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
-}
-
-fn classify(piece: &Piece, s: f32) -> [f32; 4] {
-    let t = ((s - piece.s[0]) * piece.s[2]).clamp(0.0, 1.0);
-    [0, 1, 2, 3].map(|i| piece.low[i] + (piece.high[i] - piece.low[i]) * t)
 }
 
 /// Where a scalar that rises by `rise` from `front` leaves a piece; 2 if it does not move.

@@ -54,6 +54,7 @@ mod tiles;
 pub use error::RenderError;
 pub use look::Spent;
 pub use model::Model;
+pub use order::sampling;
 pub use resources::Resources;
 pub use stage::{Stage, Stages};
 pub use tables::table_specs;
@@ -107,8 +108,6 @@ struct Job<'a> {
     /// Ranges of positions in `order`, ascending and apart, whose cells have no order among themselves: they are
     /// sorted along each ray.
     groups: &'a [Range<u32>],
-    /// Largest error of a pixel that is allowed.
-    max_error: f64,
     /// The piece that each is clipped to, where cells are drawn piece by piece; else empty.
     entry_pieces: &'a [u32],
     /// The tables of the integral.
@@ -124,8 +123,17 @@ struct Job<'a> {
     size: [u32; 2],
 }
 
-/// The share of the error allowed that goes to what is never seen behind a nearly opaque pixel.
-const OPAQUE_SHARE: f64 = 1.0 / 64.0;
+/// Share of the allowed error that may lie behind pixels that count as opaque.
+const HIDDEN_ERROR: f64 = 1e-3;
+
+/// Alpha beyond which a pixel is as good as opaque: what lies behind it, however bright, changes it by no more than
+/// [`HIDDEN_ERROR`] of the error that is allowed.
+fn opaque(max_error: f64, pieces: &[Piece], look: Option<&Look>) -> f32 {
+    let luminances = pieces.iter().flat_map(|p| [p.low, p.high]).flat_map(|c| [c[0], c[1], c[2]]);
+    let brightest = f64::from(luminances.fold(1.0, f32::max));
+    let brightest = look.map_or(brightest, |look| brightest.max(look.brightest));
+    (1.0 - HIDDEN_ERROR * max_error / brightest) as f32
+}
 
 /// Renders by plan; holds the graphics device once one has been used, and the last order.
 #[derive(Debug)]
@@ -208,6 +216,7 @@ impl Renderer {
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
             .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
+        let opaque = opaque(scene.method.max_error, &pieces, look.as_ref());
         let job = Job {
             mesh: &device_mesh,
             scalar: &scene.scalar,
@@ -218,13 +227,12 @@ impl Renderer {
             look,
             order: &cells,
             groups: &order.groups,
-            max_error: scene.method.max_error,
             entry_pieces: &entry_pieces,
             table_precision: plan.table_precision,
             table_length: (1.0 / (device_mesh.scale * table_unit(&tables))) as f32,
             tables: &tables,
             march,
-            opaque: (1.0 - OPAQUE_SHARE * scene.method.max_error.clamp(0.0, 1.0)) as f32,
+            opaque,
             size: view.size,
         };
         let mut spent = None;

@@ -66,8 +66,8 @@ pub(crate) fn doubts(order: &Order, plan: &Plan) -> Vec<String> {
     doubts
 }
 
-/// The rays of a view.
-fn sampling(view: &View) -> Sampling {
+/// The rays of a view, for [`tetlux_order`].
+pub fn sampling(view: &View) -> Sampling {
     let View { eye, right, down, forward, size, pixel, orthographic, near } = *view;
     Sampling { eye, right, down, forward, pixel, size, near, orthographic }
 }

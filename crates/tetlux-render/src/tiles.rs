@@ -36,9 +36,6 @@ use walk::{Light, Walk};
 /// Cells that are set up at a time: bounds the memory of their records, 128 bytes a cell.
 const BATCH: usize = 1 << 20;
 
-/// Share of the allowed error that may lie behind pixels that count as opaque.
-const HIDDEN_ERROR: f64 = 1e-3;
-
 /// Draws a picture: premultiplied pixels, top row first; and what segments took that were shaded one by one.
 pub(crate) fn draw(job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     draw_on(Level::new(), job, stages)
@@ -48,15 +45,12 @@ pub(crate) fn draw(job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
 fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     let eye = &job.eye;
     let ramps: Vec<Ramp> = job.pieces.iter().map(Ramp::new).collect();
-    let brightest =
-        job.pieces.iter().flat_map(|p| [p.low, p.high]).flat_map(|c| [c[0], c[1], c[2]]).fold(1.0, f32::max);
-    let brightest = job.look.as_ref().map_or(brightest, |look| brightest.max(look.brightest as f32));
     let light = Light {
         ramps: &ramps,
         model: job.weights,
         pixel: if eye.orthographic { 0.0 } else { eye.pixel as f32 },
         middle: eye.middle.map(|m| m as f32),
-        opaque: (1.0 - HIDDEN_ERROR * job.max_error / f64::from(brightest)) as f32,
+        opaque: job.opaque,
         look: job.look.as_ref(),
         further: &[],
     };

@@ -15,6 +15,7 @@ use crate::device_mesh::{DeviceMesh, NEGATIVE};
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
 use crate::lens::Lens;
+use crate::{HIDDEN_ERROR, opaque};
 
 /// Single precision against double: positions, scalars and weights are each good to some 1e-6.
 const EXACT: f64 = 1e-5;
@@ -54,13 +55,12 @@ impl Drawing {
             look: None,
             order,
             groups,
-            max_error,
             entry_pieces: &[],
             tables: &[],
             table_precision: TablePrecision::F32,
             table_length: 1.0,
             march: None,
-            opaque: 1.0,
+            opaque: opaque(max_error, &self.pieces(), None),
             size: self.view.size,
         };
         draw_on(level, &job, &mut Stages::default()).0
