@@ -24,6 +24,7 @@ mod error;
 mod file;
 mod frequency;
 mod histogram;
+mod look;
 mod method;
 mod plan;
 mod reason;
