@@ -2,13 +2,16 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test's helpers fail and tell like the test")]
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use tetlux_mesh::procedural::{Split, cuboid, three_cycle};
 use tetlux_mesh::{Component, Field, TetMesh};
 use tetlux_optics::widget::{BivariateFunction, Rectangle, Shape, WaveProfile, Widget};
 use tetlux_optics::{Classification, ImageFunction, Light};
-use tetlux_render::{Frame, Model};
-use tetlux_scene::{Backend, Camera, Lighting, Method, Order, Plan, Scene};
+use tetlux_render::{Frame, Model, table_specs};
+use tetlux_scene::{Backend, Camera, Integrator, Lighting, Method, Order, Plan, Scene};
+use tetlux_tables::{Table, TableSpec};
 use tetlux_tests::{Random, largest_error, orthographic, perspective, reference, renderer, transfer};
 
 const BUDGETS: [f64; 3] = [1e-2, 1e-3, 1e-4];
@@ -219,6 +222,97 @@ fn leaving_cells_out_changes_no_picture() {
     assert!(skipped > 100, "{skipped} cells are left out");
 }
 
+/// The picture of a method and what it took, with the tables that it asks for.
+fn drawn_by(mesh: &TetMesh, scene: &Scene, method: Method) -> (Plan, Frame) {
+    let scene = Scene { method, ..scene.clone() };
+    let plan = Plan::new(&scene, mesh, renderer().device()).unwrap();
+    let build = |spec: &TableSpec| Arc::new(Table::build(spec).unwrap());
+    let tables: Vec<_> = table_specs(&scene, mesh, &plan).iter().map(build).collect();
+    let frame = renderer().render_with(&scene, &Model::new(mesh), &plan, &tables).unwrap();
+    (plan, frame)
+}
+
+#[test]
+fn published_modes_draw_the_integrals_of_emission_density() {
+    // Of thin matter of opacity 1 the two conventions differ by little: c (1 - exp(-D)) in both. So the published modes
+    // are seen to be right by a uniform widget of that opacity, against the reference.
+    let mesh = mesh();
+    let rectangle = Rectangle { s: [-1.5, 0.3], g: [4.0, 5.6] };
+    let one = Widget::new(Shape::Uniform, Some(rectangle), 1.0, [0.1, 0.3, 1.0]).unwrap();
+    let uniform = Classification::Widgets(BivariateFunction { widgets: vec![one] });
+    let scene_of = |function| scene(&mesh, "y", function, None, cameras()[0]);
+    let scene_one = scene_of(uniform);
+    let truth = reference(&mesh, &scene_one);
+    let by = |integrator, pieces| Method { integrator, pieces, ..Method::default() };
+    let (plan, frame) = drawn_by(&mesh, &scene_one, by(Integrator::Analytic, None));
+    assert_eq!((plan.integrator, plan.order), (Integrator::Analytic, Order::Exact), "a glow needs an order: {plan}");
+    assert!(plan.warnings.is_empty(), "{:?}", plan.warnings);
+    assert!(largest_error(frame.image.pixels(), &truth) < EXACT);
+    // Classified at their ends, pieces lose the rim of the rectangle: the more of them the less.
+    let error = |pieces| {
+        let (plan, frame) = drawn_by(&mesh, &scene_one, by(Integrator::Approximate, Some(pieces)));
+        assert_eq!(frame.spent.unwrap().mean(), f64::from(pieces));
+        assert!(plan.to_string().contains(&format!("{pieces} equal pieces")), "{plan}");
+        largest_error(frame.image.pixels(), &truth)
+    };
+    let [few, many] = [10, 100].map(error);
+    println!("approximate: {few:.1e} with 10 pieces, {many:.1e} with 100");
+    assert!(few < 0.1 && many < 0.3 * few, "{few:.1e} {many:.1e}");
+    // The planted difference: of another opacity the conventions part.
+    let strong = Widget::new(Shape::Uniform, Some(rectangle), 5.0, [0.1, 0.3, 1.0]).unwrap();
+    let strong = scene_of(Classification::Widgets(BivariateFunction { widgets: vec![strong] }));
+    let (_, frame) = drawn_by(&mesh, &strong, by(Integrator::Analytic, None));
+    assert!(largest_error(frame.image.pixels(), &reference(&mesh, &strong)) > 0.1);
+    // Opacity is the same in both conventions, and images have one of the two.
+    for (function, integrator) in [(all_widgets(), Integrator::Approximate), (image(), Integrator::Approximate)] {
+        let scene = scene_of(function);
+        let (_, frame) = drawn_by(&mesh, &scene, by(integrator, Some(200)));
+        let alphas = frame.image.pixels().iter().zip(reference(&mesh, &scene));
+        let apart = alphas.map(|(pixel, truth)| (f64::from(pixel[3]) - truth[3]).abs()).fold(0.0, f64::max);
+        assert!(apart < 2e-2, "{apart:.1e}");
+    }
+}
+
+#[test]
+fn more_peaks_than_the_published_form_has_are_told_of() {
+    let mesh = mesh();
+    let plan = |widgets: Vec<Widget>, integrator| {
+        let function = Classification::Widgets(BivariateFunction { widgets });
+        let method = Method { integrator, ..Method::default() };
+        let scene = Scene { method, ..scene(&mesh, "y", function, None, cameras()[0]) };
+        Plan::new(&scene, &mesh, renderer().device()).unwrap()
+    };
+    let wave = |frequency| widget(wave(WaveProfile::AbsSine, [frequency, 0.0]), None, [1.0; 3]);
+    assert!(plan(vec![wave(0.05)], Integrator::Analytic).warnings.is_empty());
+    let told = plan(vec![wave(8.0)], Integrator::Analytic).warnings;
+    assert!(told[0].contains("more than one peak") && told[0].contains("adaptive"), "{told:?}");
+    assert!(plan(vec![wave(8.0)], Integrator::Auto).warnings.is_empty(), "there is no limit elsewhere");
+    let told = plan(vec![wave(0.05), shapes()[0].1], Integrator::Analytic).warnings;
+    assert!(told[0].contains("overlap") && told[0].contains("adaptive"), "{told:?}");
+}
+
+#[test]
+fn integrators_that_make_no_sense_are_refused_in_words() {
+    let mesh = mesh();
+    let refused = |function: Classification, integrator, light: bool, words: &[&str]| {
+        let light = light.then(|| Light::new(None, [0.3, 0.7, 0.2], 20.0, 0.0).unwrap());
+        let method = Method { integrator, ..Method::default() };
+        let scene = Scene { method, ..scene(&mesh, "y", function, light, cameras()[0]) };
+        let reason = Plan::new(&scene, &mesh, renderer().device()).unwrap_err().to_string();
+        assert!(words.iter().all(|word| reason.contains(word)), "{words:?}: {reason}");
+    };
+    for integrator in [Integrator::Adaptive, Integrator::Analytic, Integrator::Approximate] {
+        refused(one_field(), integrator, false, &["--integrator direct"]);
+        refused(two_fields(), integrator, false, &["--integrator direct"]);
+    }
+    refused(image(), Integrator::Analytic, false, &["closed form", "approximate or adaptive"]);
+    refused(all_widgets(), Integrator::Analytic, true, &["[light]", "--integrator adaptive"]);
+    refused(image(), Integrator::Approximate, true, &["[light]", "--integrator adaptive"]);
+    refused(all_widgets(), Integrator::Direct, false, &["transfer function", "--integrator adaptive"]);
+    let squared = Classification::Widgets(BivariateFunction { widgets: vec![shapes()[4].1] });
+    refused(squared, Integrator::Analytic, false, &["sine-squared", "sine\""]);
+}
+
 #[test]
 fn other_ways_are_refused_with_the_remedy() {
     let mesh = mesh();
@@ -227,9 +321,9 @@ fn other_ways_are_refused_with_the_remedy() {
         Plan::new(&scene, &mesh, renderer().device()).map(|plan| plan.to_string()).unwrap_or_else(|e| e.to_string())
     };
     assert!(says(Method { backend: Backend::Gpu, ..Method::default() }, None).contains("--backend cpu"));
-    let average = Method { integrator: tetlux_scene::Integrator::Average, ..Method::default() };
+    let average = Method { integrator: Integrator::Average, ..Method::default() };
     assert!(says(average, None).contains("average"));
-    let psi = Method { integrator: tetlux_scene::Integrator::Psi, ..Method::default() };
+    let psi = Method { integrator: Integrator::Psi, ..Method::default() };
     assert!(says(psi, None).contains("psi"));
     let plan = says(Method::default(), None);
     assert!(plan.contains("two fields needs it") && plan.contains("skipped: nothing asks for them"), "{plan}");

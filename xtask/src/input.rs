@@ -65,7 +65,8 @@ pub(crate) struct SceneArgs {
     /// How fragments come by their segments: auto, ray, perspective or screen-linear
     #[arg(long, value_name = "NAME")]
     pub(crate) interpolation: Option<Interpolation>,
-    /// auto, average, linear, psi, q, direct, symmetric, preint, preint-log or preint-q
+    /// auto, average, linear, psi, q, direct, symmetric, preint, preint-log or preint-q; for widgets and images adaptive,
+    /// analytic or approximate
     #[arg(long, value_name = "NAME")]
     pub(crate) integrator: Option<Integrator>,
     /// auto, vertex, post-exact or post-clip
@@ -77,6 +78,9 @@ pub(crate) struct SceneArgs {
     /// auto, rgba8, rgba8-dither, rgba16f or rgba32f
     #[arg(long, value_name = "NAME")]
     pub(crate) target: Option<Target>,
+    /// Equal pieces a segment of --integrator approximate, 1 to 1000 [default: 10]
+    #[arg(long, value_name = "N")]
+    pub(crate) pieces: Option<u32>,
     /// Largest error of a pixel that `compare` accepts, linear
     #[arg(long, value_name = "E")]
     pub(crate) max_error: Option<f64>,
@@ -247,6 +251,7 @@ impl SceneArgs {
         method.classification = self.classification.unwrap_or(method.classification);
         method.table_precision = self.table_precision.unwrap_or(method.table_precision);
         method.target = self.target.unwrap_or(method.target);
+        method.pieces = self.pieces.or(method.pieces);
         method.max_error = self.max_error.unwrap_or(method.max_error);
         Ok(())
     }

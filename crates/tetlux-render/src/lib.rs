@@ -46,6 +46,7 @@ mod look;
 mod march;
 mod model;
 mod order;
+mod published;
 mod resources;
 mod stage;
 mod tables;
@@ -75,6 +76,7 @@ use crate::eye_space::EyeSpace;
 use crate::lens::Lens;
 use crate::look::Look;
 use crate::march::March;
+use crate::published::Published;
 
 /// A picture and the time it took.
 #[derive(Debug)]
@@ -209,7 +211,11 @@ impl Renderer {
             (std::mem::take(&mut order.cells), Vec::new())
         };
         let eye = EyeSpace::new(view, mesh, &device_mesh);
-        let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), extinction)?;
+        let longest = || tables::largest_thickness(mesh, &plan.cells) * device_mesh.scale;
+        let published = Published::new(plan, &tables, longest);
+        let [low, high] = mesh.local_bounds();
+        let across = low.distance(high) * device_mesh.scale;
+        let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), extinction, published, across)?;
         if plan.backend == Backend::Gpu && look.is_some() {
             return Err(RenderError::CpuOnly);
         }

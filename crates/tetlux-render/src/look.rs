@@ -34,6 +34,7 @@ use tetlux_scene::{Lighting, Scene};
 use crate::RenderError;
 use crate::device_mesh::normalised;
 use crate::eye_space::EyeSpace;
+use crate::published::Published;
 
 /// Shares of the allowed error that the colour of a segment may take, without light and with it, and the light. The
 /// rest is for single precision and for what is hidden.
@@ -73,6 +74,9 @@ pub(crate) struct Look {
     pub(crate) brightest: f64,
     has_second: bool,
     function: Function,
+    /// Not the integrals of emission-absorption, but those of Song et al., and the unit distances per device unit.
+    published: Option<Published>,
+    emission: f32,
     light: Option<LightUniform>,
     /// Errors of colour and of light for an opacity of 1.
     errors: [f32; 2],
@@ -123,7 +127,7 @@ fn mix<const N: usize>(front: [f32; N], back: [f32; N], u: f32) -> [f32; N] {
 
 impl Look {
     /// None where one field's transfer function is all there is: nothing is made then. `pieces` are its pieces,
-    /// `extinction` is that of opacity 1 per device unit.
+    /// `extinction` is that of opacity 1 per device unit, `across` the longest ray, in device units.
     ///
     /// # Errors
     ///
@@ -134,6 +138,8 @@ impl Look {
         eye: &EyeSpace,
         (pieces, weights): (&[Piece], Weights),
         extinction: f64,
+        published: Option<Published>,
+        across: f64,
     ) -> Result<Option<Look>, RenderError> {
         let bivariate = scene.classification.is_bivariate();
         if !bivariate && scene.lighting.is_none() {
@@ -149,11 +155,18 @@ impl Look {
             Classification::TwoFields(transfer) => {
                 Function::TwoFields(two_field_f32::axes(transfer, ranges, extinction))
             }
+            Classification::Widgets(function) if published.is_some() => {
+                Function::Widgets(widget_f32::widgets(&function.as_published(), ranges, extinction))
+            }
             Classification::Widgets(function) => Function::Widgets(widget_f32::widgets(function, ranges, extinction)),
             Classification::Image(image) => Function::Image(image_f32::image(image, ranges, extinction)),
         };
         let mut further: Vec<Further> = second.map(scalar_values).into_iter().collect();
         let mut brightest = scene.classification.brightest();
+        if published.is_some() {
+            // All along a ray may glow.
+            brightest *= across * extinction;
+        }
         let (mut slope, mut curvature) = (0.0, 0.0);
         let mut light = None;
         if let Some(lighting) = &scene.lighting {
@@ -177,6 +190,8 @@ impl Look {
             brightest,
             has_second: bivariate,
             function,
+            published,
+            emission: extinction as f32,
             light,
             errors: [error(share), error(LIGHT_SHARE)],
             slope: slope as f32,
@@ -214,8 +229,14 @@ impl Look {
                 one(transfer_f32::integrate(pieces, segment.pieces, *weights, front[0], back[0], length))
             }
             Function::TwoFields([color, opacity]) => one(two_field_f32::integrate(color, opacity, front, back, length)),
-            Function::Widgets(widgets) => widgets_f32::integrate_share(widgets, front, back, length, self.errors[0]),
-            Function::Image(image) => image_f32::integrate_counted(image, front, back, length, self.errors[0]),
+            Function::Widgets(widgets) => match &self.published {
+                None => widgets_f32::integrate_share(widgets, front, back, length, self.errors[0]),
+                Some(published) => published.widgets(widgets, front, back, length, self.emission),
+            },
+            Function::Image(image) => match &self.published {
+                None => image_f32::integrate_counted(image, front, back, length, self.errors[0]),
+                Some(published) => published.image(image, front, back, length, self.emission),
+            },
         }
     }
 

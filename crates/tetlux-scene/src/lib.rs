@@ -25,6 +25,7 @@ mod file;
 mod frequency;
 mod histogram;
 mod method;
+mod one_peak;
 mod plan;
 mod reason;
 mod view;
