@@ -129,7 +129,7 @@ impl Input {
 /// The scene of a mesh that comes without one.
 pub(crate) const DEFAULT: &str = include_str!("../../scenes/default.toml");
 /// The scene that is rendered where nothing is named.
-const BUILT_IN: &str = include_str!("../../scenes/wing.toml");
+pub(crate) const BUILT_IN: &str = include_str!("../../scenes/wing.toml");
 /// Tetrahedra of its mesh.
 const BUILT_IN_CELLS: usize = 100_000;
 const BUILT_IN_SEED: u64 = 1;
@@ -156,10 +156,7 @@ impl SceneArgs {
                 if let Some(flag) = self.file.of_a_file() {
                     bail!("{flag} is for a mesh file, and none is named: name one, or leave the flag out");
                 }
-                progress::during("making the built-in mesh", || {
-                    let wing = procedural::wing(BUILT_IN_SEED, BUILT_IN_CELLS);
-                    TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])
-                })?
+                progress::during("making the built-in mesh", || wing(BUILT_IN_CELLS))?
             }
             None => bail!(
                 "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" or built_in = true under [mesh]",
@@ -255,6 +252,12 @@ impl SceneArgs {
         method.max_error = self.max_error.unwrap_or(method.max_error);
         Ok(())
     }
+}
+
+/// The mesh of the built-in scene, of about so many cells.
+pub(crate) fn wing(cells: usize) -> Result<TetMesh> {
+    let wing = procedural::wing(BUILT_IN_SEED, cells);
+    Ok(TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])?)
 }
 
 /// The name of a file without its extension.

@@ -161,6 +161,11 @@ impl Renderer {
         self.gpu.as_ref().map(gpu::Gpu::device)
     }
 
+    /// The adapter's driver and its version, as they name themselves.
+    pub fn driver(&self) -> Option<&str> {
+        self.gpu.as_ref().map(gpu::Gpu::driver)
+    }
+
     /// Renders a scene on a mesh as its plan says: by a method without tables.
     ///
     /// # Errors
