@@ -19,7 +19,12 @@ struct Look {
     size: vec2<u32>,
     // Of two lists of pieces, how many are in the first.
     color_pieces: u32,
-    unused: u32,
+    // Of the published modes: equal pieces a segment; unit distances per device unit; the length in device units that is 1 in
+    // the table.
+    pieces: u32,
+    emission: f32,
+    unit: f32,
+    unused: vec2<f32>,
 }
 
 @group(0) @binding(10) var<uniform> look: Look;

@@ -29,14 +29,16 @@ macro_rules! modules {
 pub const MODULES: &[(&str, &str)] = modules! {
     lib {
         balanced cell erf flat further gradients image integrated light lit look lookup mesh mesh_buffers one_field plane
-        published ray segment silhouette span spent symmetric thick transfer two_fields view volume walk widget widgets
+        published ray segment silhouette span spent symmetric thick transfer two_fields view volume walk widget
+        widget_tables widgets
     }
     data { cell point }
-    function { image one_field two_fields widgets }
+    function { analytic approximate image one_field two_fields widgets }
     geometry { balanced ray thick vicp }
     interpolation { perspective screen_linear }
     output { dither plain straight }
     quantity { color lit pair scalar }
+    sample { image widgets }
     second { cell none point }
     shading { lit post_clip post_exact preint preint_log preint_q two_scalars vertex }
     source { computed stored }
@@ -55,6 +57,7 @@ pub const DEFAULTS: &[Choice] = &[
     ("interpolation", "interpolation::perspective"),
     ("output", "output::plain"),
     ("quantity", "quantity::scalar"),
+    ("sample", "sample::widgets"),
     ("second", "second::none"),
     ("shading", "shading::post_exact"),
     ("source", "source::stored"),
@@ -252,6 +255,11 @@ mod tests {
                 ("shading", "shading::two_scalars"),
             ],
             "shading::lit" | "quantity::lit" => &[("quantity", "quantity::lit"), ("shading", "shading::lit")],
+            "function::analytic" | "function::approximate" | "sample::image" | "sample::widgets" => &[
+                ("function", "function::approximate"),
+                ("quantity", "quantity::pair"),
+                ("shading", "shading::two_scalars"),
+            ],
             "function::image" | "function::one_field" | "function::two_fields" | "function::widgets" => {
                 &[("quantity", "quantity::lit"), ("shading", "shading::lit")]
             }

@@ -113,7 +113,7 @@ fn every_axis_of_the_method_is_a_key() {
     let text = format!(
         "{TRANSFER}[method]\nbackend = \"gpu\"\norder = \"centroid\"\nprojection = \"gator\"\n\
          interpolation = \"screen-linear\"\nintegrator = \"preint-log\"\nclassification = \"post-exact\"\n\
-         table_precision = \"u16\"\ntarget = \"rgba8-dither\"\nmax_error = 0.5\n"
+         table_precision = \"u16\"\ntarget = \"rgba8-dither\"\npieces = 20\nmax_error = 0.5\n"
     );
     let method = SceneFile::parse("a.toml", &text).unwrap().method;
     let expected = Method {
@@ -125,6 +125,7 @@ fn every_axis_of_the_method_is_a_key() {
         classification: Classification::PostExact,
         table_precision: TablePrecision::U16,
         target: Target::Rgba8Dither,
+        pieces: Some(20),
         max_error: 0.5,
     };
     assert_eq!(method, expected);

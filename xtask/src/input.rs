@@ -65,7 +65,8 @@ pub(crate) struct SceneArgs {
     /// How fragments come by their segments: auto, ray, perspective or screen-linear
     #[arg(long, value_name = "NAME")]
     pub(crate) interpolation: Option<Interpolation>,
-    /// auto, average, linear, psi, q, direct, symmetric, preint, preint-log or preint-q
+    /// auto, average, linear, psi, q, direct, symmetric, preint, preint-log or preint-q; for widgets and images adaptive,
+    /// analytic or approximate
     #[arg(long, value_name = "NAME")]
     pub(crate) integrator: Option<Integrator>,
     /// auto, vertex, post-exact or post-clip
@@ -77,6 +78,9 @@ pub(crate) struct SceneArgs {
     /// auto, rgba8, rgba8-dither, rgba16f or rgba32f
     #[arg(long, value_name = "NAME")]
     pub(crate) target: Option<Target>,
+    /// Equal pieces a segment of --integrator approximate, 1 to 1000 [default: 10]
+    #[arg(long, value_name = "N")]
+    pub(crate) pieces: Option<u32>,
     /// Largest error of a pixel that `compare` accepts, linear
     #[arg(long, value_name = "E")]
     pub(crate) max_error: Option<f64>,
@@ -125,7 +129,7 @@ impl Input {
 /// The scene of a mesh that comes without one.
 pub(crate) const DEFAULT: &str = include_str!("../../scenes/default.toml");
 /// The scene that is rendered where nothing is named.
-const BUILT_IN: &str = include_str!("../../scenes/wing.toml");
+pub(crate) const BUILT_IN: &str = include_str!("../../scenes/wing.toml");
 /// Tetrahedra of its mesh.
 const BUILT_IN_CELLS: usize = 100_000;
 const BUILT_IN_SEED: u64 = 1;
@@ -152,10 +156,7 @@ impl SceneArgs {
                 if let Some(flag) = self.file.of_a_file() {
                     bail!("{flag} is for a mesh file, and none is named: name one, or leave the flag out");
                 }
-                progress::during("making the built-in mesh", || {
-                    let wing = procedural::wing(BUILT_IN_SEED, BUILT_IN_CELLS);
-                    TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])
-                })?
+                progress::during("making the built-in mesh", || wing(BUILT_IN_CELLS))?
             }
             None => bail!(
                 "{}: the scene names no mesh: give one with --mesh FILE, or path = \"...\" or built_in = true under [mesh]",
@@ -247,9 +248,16 @@ impl SceneArgs {
         method.classification = self.classification.unwrap_or(method.classification);
         method.table_precision = self.table_precision.unwrap_or(method.table_precision);
         method.target = self.target.unwrap_or(method.target);
+        method.pieces = self.pieces.or(method.pieces);
         method.max_error = self.max_error.unwrap_or(method.max_error);
         Ok(())
     }
+}
+
+/// The mesh of the built-in scene, of about so many cells.
+pub(crate) fn wing(cells: usize) -> Result<TetMesh> {
+    let wing = procedural::wing(BUILT_IN_SEED, cells);
+    Ok(TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])?)
 }
 
 /// The name of a file without its extension.

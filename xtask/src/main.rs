@@ -3,6 +3,7 @@
 #[macro_use]
 mod output;
 
+mod bench;
 mod build_tables;
 mod cache;
 mod compare;
@@ -61,6 +62,9 @@ enum Command {
     /// Measure every method by name: its error and its cost, as a table in a page
     #[command(after_help = methods::EXAMPLES)]
     Methods(methods::Args),
+    /// Time methods against their error, beside their peers and the papers' own tables
+    #[command(after_help = bench::EXAMPLES)]
+    Bench(bench::Args),
     /// Run format, lints, all tests and the documentation; installs a Vulkan driver on Debian if there is none
     Test,
 }
@@ -76,6 +80,7 @@ fn main() -> ExitCode {
         Command::Order(args) => order::run(&args),
         Command::Testbed(args) => testbed::run(&args).map(|()| true),
         Command::Methods(args) => methods::run(&args).map(|()| true),
+        Command::Bench(args) => bench::run(&args).map(|()| true),
         Command::Test => test::run().map(|()| true),
     };
     match result {

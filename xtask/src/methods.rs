@@ -83,7 +83,7 @@ const ROWS: &[Row] = &[
 ];
 
 /// A graded mesh of edges from 1e-5 to 1.
-const GRADED: Setting = Setting {
+pub(crate) const GRADED: Setting = Setting {
     mesh: graded_cube,
     field: log_radius,
     color: &[[0.0, 1.0, 0.6, 0.1], [0.5, 1.0, 0.5, 0.1], [0.8, 0.2, 0.6, 1.0], [1.2, 0.2, 0.9, 0.6]],
@@ -95,7 +95,7 @@ const GRADED: Setting = Setting {
 };
 
 /// A peak so narrow that it lies within cells.
-const PEAK: Setting = Setting {
+pub(crate) const PEAK: Setting = Setting {
     mesh: cube::<12>,
     field: |p| p.length(),
     color: &[[0.0, 1.0, 0.7, 0.2], [0.75, 1.0, 0.45, 0.1], [0.85, 0.2, 0.4, 0.9], [1.8, 0.1, 0.2, 0.6]],

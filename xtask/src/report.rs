@@ -102,11 +102,17 @@ impl From<Spent> for AdaptiveReport {
     }
 }
 
-#[derive(Serialize)]
-struct StageReport {
-    name: &'static str,
-    wall_seconds: f64,
-    cpu_seconds: Option<f64>,
+#[derive(Serialize, Clone)]
+pub(crate) struct StageReport {
+    pub(crate) name: &'static str,
+    pub(crate) wall_seconds: f64,
+    pub(crate) cpu_seconds: Option<f64>,
+}
+
+impl From<&Stage> for StageReport {
+    fn from(stage: &Stage) -> Self {
+        StageReport { name: stage.name, wall_seconds: stage.wall, cpu_seconds: stage.cpu }
+    }
 }
 
 impl<'a> Report<'a> {
@@ -133,10 +139,7 @@ impl<'a> Report<'a> {
             max_error: input.scene.method.max_error,
             plan: plan.reasons.iter().map(|(what, why)| (*what, why.as_str())).collect(),
             warnings: &plan.warnings,
-            stages: stages
-                .iter()
-                .map(|s| StageReport { name: s.name, wall_seconds: s.wall, cpu_seconds: s.cpu })
-                .collect(),
+            stages: stages.iter().map(StageReport::from).collect(),
             resources: None,
             adaptive: None,
             error: None,

@@ -30,12 +30,14 @@ pub(crate) fn load(input: &Input, plan: &Plan) -> Result<Vec<Arc<Table>>> {
 }
 
 /// What to do about tables that cannot be used: an integrator of the command line is an order, so that they are an error;
-/// one of a scene file is a wish, and the integral is evaluated directly instead. The warning goes into the plan.
+/// one of a scene file is a wish, and the integral is evaluated without tables instead. The warning goes into the plan.
 pub(crate) fn or_directly(loaded: Result<Vec<Arc<Table>>>, forced: bool, plan: &mut Plan) -> Result<Vec<Arc<Table>>> {
     match loaded {
         Err(error) if !forced => {
-            let asked = std::mem::replace(&mut plan.integrator, Integrator::Direct);
-            plan.warnings.push(format!("{error}; until then the integral is evaluated directly instead of by {asked}"));
+            let instead = if plan.integrator.is_for_two_fields() { Integrator::Adaptive } else { Integrator::Direct };
+            let asked = std::mem::replace(&mut plan.integrator, instead);
+            plan.warnings
+                .push(format!("{error}; until then the integral is evaluated as {instead} instead of {asked}"));
             Ok(Vec::new())
         }
         loaded => loaded,
@@ -78,7 +80,7 @@ mod tests {
         assert!(or_directly(missing(), false, &mut wished).unwrap().is_empty());
         assert_eq!(wished.integrator, Integrator::Direct);
         let warning = wished.warnings.last().unwrap();
-        assert!(warning.contains("build-tables --only q") && warning.contains("directly"), "{warning}");
+        assert!(warning.contains("build-tables --only q") && warning.contains("direct"), "{warning}");
 
         let mut forced = plan.clone();
         assert!(or_directly(missing(), true, &mut forced).is_err());

@@ -26,6 +26,7 @@ mod error;
 mod exr_file;
 mod image;
 mod metrics;
+mod plot;
 mod png_file;
 
 pub use atomic::write_atomically;
@@ -34,4 +35,5 @@ pub use error::ImageError;
 pub use exr_file::{METADATA_ATTRIBUTE, read_exr, read_exr_metadata, write_exr};
 pub use image::{Image, MAX_PIXELS, MAX_SIDE};
 pub use metrics::{Metrics, compare};
+pub use plot::{Curve, Grid, Style, log_log};
 pub use png_file::{Encoding, read_png, write_png};

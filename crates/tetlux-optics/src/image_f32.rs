@@ -75,6 +75,14 @@ fn cell_of(place: f32, last: u32) -> u32 {
     (place.floor().min(1e9) as u32).min(last.max(1) - 1)
 }
 
+/// Luminance and, last, extinction per device unit at a point of normalised scalars.
+pub fn classify(image: &Image, point: [f32; 2]) -> [f32; 4] {
+    let x = point[0] * image.scale[0] + image.origin[0];
+    let y = point[1] * image.scale[1] + image.origin[1];
+    let cell = [cell_of(x, image.size[0] - 1), cell_of(y, image.size[1] - 1)];
+    bilinear(&texels_around(image, cell), x - cell[0] as f32, y - cell[1] as f32)
+}
+
 /// The next u beyond `u` at which a place that runs from `from` by `step` crosses a line of the grid; 2 if none.
 fn next_line(from: f32, step: f32, u: f32, last: u32) -> f32 {
     if step.abs() < 1e-6 {

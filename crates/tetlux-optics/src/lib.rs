@@ -29,7 +29,6 @@
 //! | [`widget_f32`], [`widgets_f32`] | widgets, and segments through any number of them to a stated error, in f32 |
 //! | [`two_field_f32`] | colour of one scalar, opacity of another, exact, in f32 |
 //! | [`image_f32`] | image functions to a stated error, in f32 |
-//! | [`approximate_f32`] | the approximate mode as it was published, in f32 |
 //! | [`accuracy`] | inputs and measure of the stated f32 errors |
 //! | [`color_space`] | the colour spaces in which presets are interpolated |
 //!
@@ -49,7 +48,6 @@
 //! ```
 
 pub mod accuracy;
-pub mod approximate_f32;
 pub mod classification;
 pub mod color_space;
 pub mod emission;

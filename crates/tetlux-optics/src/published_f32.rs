@@ -27,7 +27,7 @@ fn erfi_published(x: f32) -> f32 {
 }
 
 /// Mean transmittance to the front by the published form, for cleaned a, b.
-fn psi_published(a: f32, b: f32) -> f32 {
+pub fn psi_published(a: f32, b: f32) -> f32 {
     if a == b {
         return opacity(a) / a.max(1e-30);
     }

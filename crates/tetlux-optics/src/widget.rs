@@ -24,6 +24,9 @@ pub const GAUSSIAN_TAIL: f64 = 1e-12;
 /// That many sigma from its centre: sqrt(-2 ln GAUSSIAN_TAIL).
 const GAUSSIAN_REACH: f64 = 7.433_844_377_6;
 
+/// That many sigma from its centre a Gaussian ends as [`BivariateFunction::as_published`]: at 1.1 % of its peak.
+const PUBLISHED_REACH: f64 = 3.0;
+
 /// A rectangle of the (s, g) plane, ends included. Ends may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
@@ -336,6 +339,25 @@ impl BivariateFunction {
     /// The function in other units of s and g: see [`Widget::mapped`].
     pub fn mapped(&self, origin: [f64; 2], scale: [f64; 2]) -> Self {
         Self { widgets: self.widgets.iter().map(|widget| widget.mapped(origin, scale)).collect() }
+    }
+
+    /// The function with each widget limited to a rectangle, as the published convention needs it, in which a widget's
+    /// colour is emitted wherever it is, whatever its opacity: a Gaussian, which ends nowhere, to 3 sigma around its centre.
+    /// Waves and uniform widgets are their rectangles.
+    pub fn as_published(&self) -> Self {
+        let limited = |widget: &Widget| {
+            let Shape::Gaussian { center, sigma } = widget.shape else { return Some(*widget) };
+            let whole = [f64::NEG_INFINITY, f64::INFINITY];
+            let Rectangle { s, g } = widget.support.unwrap_or(Rectangle { s: whole, g: whole });
+            let within = |axis: usize, [low, high]: [f64; 2]| {
+                let reach = PUBLISHED_REACH * sigma[axis];
+                [low.max(center[axis] - reach), high.min(center[axis] + reach)]
+            };
+            let support = Rectangle { s: within(0, s), g: within(1, g) };
+            let inside = support.s[0] < support.s[1] && support.g[0] < support.g[1];
+            inside.then(|| Widget::build(widget.shape, Some(support), widget.max_opacity, widget.color))
+        };
+        Self { widgets: self.widgets.iter().filter_map(limited).collect() }
     }
 
     /// Whether any widget may be seen over a rectangle: see [`Widget::is_visible_over`].

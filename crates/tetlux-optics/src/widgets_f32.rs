@@ -31,8 +31,8 @@
 #[cfg(test)]
 mod tests;
 
-use crate::segment_f32::{opacity, weights_direct};
-use crate::widget_f32::{Track, Widget, inside, kinks, next_kink, track, track_depth, track_rate, track_slopes};
+use crate::segment_f32::opacity;
+use crate::widget_f32::{Widget, kinks, next_kink, track, track_depth, track_rate, track_slopes};
 
 /// No segment is cut into more pieces than about this.
 pub const MAX_PIECES: u32 = 512;
@@ -116,17 +116,7 @@ fn tilt(x: f32, alpha: f32) -> f32 {
 }
 
 /// Composites pieces of the share `step` front to back, cut where a widget begins or ends and, if `kinks`, at kinks.
-///
-/// With `density` the widgets' colours are emission per device unit all over their rectangles, whatever the extinction.
-fn composite(
-    widgets: &[Widget],
-    front: [f32; 2],
-    back: [f32; 2],
-    length: f32,
-    step: f32,
-    kinks: bool,
-    density: bool,
-) -> Integrated {
+fn composite(widgets: &[Widget], front: [f32; 2], back: [f32; 2], length: f32, step: f32, kinks: bool) -> Integrated {
     let mut result = Integrated::default();
     let mut transmittance = 1.0;
     let mut u = 0.0;
@@ -136,13 +126,12 @@ fn composite(
         let mut seen = false;
         for widget in widgets {
             let track = track(widget, front, back, length);
-            let [from, to] = extent(widget, &track, front, back, density);
-            if from < to && to > u {
-                if from > u {
-                    end = end.min(from);
+            if track.from < track.to && track.to > u {
+                if track.from > u {
+                    end = end.min(track.from);
                 } else {
                     seen = true;
-                    end = end.min(to);
+                    end = end.min(track.to);
                     if kinks {
                         end = end.min(next_kink(&track, u));
                     }
@@ -155,7 +144,7 @@ fn composite(
         // Never less than f32 resolves.
         end = end.max(u + 1e-6).min(1.0);
         if seen {
-            let piece = piece(widgets, front, back, length, u, end, density);
+            let piece = piece(widgets, front, back, length, u, end);
             for channel in 0..3 {
                 result.color[channel] += transmittance * piece[channel];
             }
@@ -167,24 +156,8 @@ fn composite(
     result
 }
 
-/// Where a widget counts: where it is seen or, if it emits all over its rectangle, there.
-fn extent(widget: &Widget, track: &Track, front: [f32; 2], back: [f32; 2], density: bool) -> [f32; 2] {
-    if density {
-        return inside(widget, front, back);
-    }
-    [track.from, track.to]
-}
-
 /// Colour and, last, optical depth of the piece from u to `end`, on which no widget begins or ends.
-fn piece(
-    widgets: &[Widget],
-    front: [f32; 2],
-    back: [f32; 2],
-    length: f32,
-    u: f32,
-    end: f32,
-    density: bool,
-) -> [f32; 4] {
+fn piece(widgets: &[Widget], front: [f32; 2], back: [f32; 2], length: f32, u: f32, end: f32) -> [f32; 4] {
     let width = end - u;
     let mut depth = 0.0;
     let mut growth = 0.0;
@@ -192,24 +165,16 @@ fn piece(
     let mut emission_growth = [0.0; 3];
     for widget in widgets {
         let track = track(widget, front, back, length);
-        let [from, to] = extent(widget, &track, front, back, density);
-        if from <= u && to > u {
+        if track.from <= u && track.to > u {
             let own = track_depth(&track, u, end);
             let own_growth = 0.5 * width * (track_rate(&track, end) - track_rate(&track, u));
             depth += own;
             growth += own_growth;
             for channel in 0..3 {
-                let weight = if density { 1.0 } else { own };
-                emission[channel] += widget.color[channel] * weight;
+                emission[channel] += widget.color[channel] * own;
                 emission_growth[channel] += widget.color[channel] * own_growth;
             }
         }
-    }
-    if density {
-        // Mean transmittance psi = zeta + w_b, extinction linear but for its scale.
-        let [alpha, w_b, _] = weights_direct((depth + growth).max(0.0), (depth - growth).max(0.0));
-        let visible = width * length * (1.0 - alpha + w_b);
-        return [emission[0] * visible, emission[1] * visible, emission[2] * visible, depth];
     }
     if depth < 1e-30 {
         return [0.0; 4];
@@ -261,7 +226,7 @@ fn integrate_summed(
             let count = if few { piece_count(sum, spread, alpha, bound) } else { MAX_PIECES };
             step = 1.0 / count as f32;
         }
-        let cut = composite(widgets, front, back, length, step, matters && few, false);
+        let cut = composite(widgets, front, back, length, step, matters && few);
         result.pieces = cut.pieces;
         for channel in 0..3 {
             result.color[channel] = cut.color[channel];
@@ -273,32 +238,23 @@ fn integrate_summed(
     result
 }
 
-/// The same with each widget's colour as an emission density, all over its rectangle, in `count` pieces and more at kinks
-/// (Song et al. 2009, section 4, where it is a table of one widget): alpha exact, exact for uniform and triangle
-/// widgets. Colours are per device unit.
-pub fn integrate_density(widgets: &[Widget], front: [f32; 2], back: [f32; 2], length: f32, count: u32) -> Integrated {
-    let sum = summary(widgets, front, back, length);
-    let few = sum.kinks <= MAX_PIECES as f32;
-    let pieces = if few { count.clamp(1, MAX_PIECES) } else { MAX_PIECES };
-    let mut result = composite(widgets, front, back, length, 1.0 / pieces as f32, few, true);
-    result.color[3] = opacity(sum.depth);
-    result
-}
-
-/// Whether the published analytic form holds on a segment: at most one widget is met, and of a wave at most one period
-/// between two zeros (Song et al. 2009, sections 4.3, 4.4 and 6.3).
-pub fn has_one_peak(widgets: &[Widget], front: [f32; 2], back: [f32; 2]) -> bool {
-    let mut met = 0;
+/// Colour and, last, extinction per device unit of widgets at a point: of several the extinction-weighted mean colour.
+pub fn classify(widgets: &[Widget], point: [f32; 2]) -> [f32; 4] {
+    let mut sum = [0.0; 4];
     for widget in widgets {
-        let track = track(widget, front, back, 1.0);
-        if track_depth(&track, track.from, track.to) > 0.0 {
-            met += 1;
-            let one = track.start + track.step * track.from;
-            let two = track.start + track.step * track.to;
-            if track.kind > 1 && one.max(two).ceil() - one.min(two).floor() > 1.0 {
-                return false;
+        let track = track(widget, point, point, 1.0);
+        if track.from < track.to {
+            let rate = track_rate(&track, 0.0);
+            for channel in 0..3 {
+                sum[channel] += widget.color[channel] * rate;
             }
+            sum[3] += rate;
         }
     }
-    met <= 1
+    if sum[3] > 0.0 {
+        for channel in 0..3 {
+            sum[channel] /= sum[3];
+        }
+    }
+    sum
 }

@@ -30,6 +30,7 @@ use variant::Variant;
 pub(crate) struct Gpu {
     adapter: wgpu::Adapter,
     device: Device,
+    driver: String,
     open: OnceLock<Open>,
     pipelines: Made<Pipelines>,
     marchers: Made<Marcher>,
@@ -78,11 +79,23 @@ impl Gpu {
             blends_f32: adapter.features().contains(wgpu::Features::FLOAT32_BLENDABLE),
             norm16: adapter.features().contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM),
         };
-        Some(Gpu { adapter, device, open: OnceLock::new(), pipelines: Mutex::default(), marchers: Mutex::default() })
+        let driver = format!("{} {}", info.driver, info.driver_info);
+        Some(Gpu {
+            adapter,
+            device,
+            driver,
+            open: OnceLock::new(),
+            pipelines: Mutex::default(),
+            marchers: Mutex::default(),
+        })
     }
 
     pub(crate) fn device(&self) -> &Device {
         &self.device
+    }
+
+    pub(crate) fn driver(&self) -> &str {
+        &self.driver
     }
 
     /// Draws a picture.

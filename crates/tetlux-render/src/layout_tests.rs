@@ -82,6 +82,9 @@ fn the_look() {
         ("origin", offset_of!(LookUniform, origin)),
         ("size", offset_of!(LookUniform, size)),
         ("color_pieces", offset_of!(LookUniform, color_pieces)),
+        ("pieces", offset_of!(LookUniform, pieces)),
+        ("emission", offset_of!(LookUniform, emission)),
+        ("unit", offset_of!(LookUniform, unit)),
         ("unused", offset_of!(LookUniform, unused)),
     ]);
     assert_eq!(layout_in("lib::look", "Look"), (ours, size_of::<LookUniform>()));

@@ -46,6 +46,7 @@ mod look;
 mod march;
 mod model;
 mod order;
+mod published;
 mod resources;
 mod stage;
 mod tables;
@@ -76,6 +77,7 @@ use crate::gpu::Drawn;
 use crate::lens::Lens;
 use crate::look::Look;
 use crate::march::March;
+use crate::published::Published;
 
 /// A picture and the time it took.
 #[derive(Debug)]
@@ -160,6 +162,11 @@ impl Renderer {
         self.gpu.as_ref().map(gpu::Gpu::device)
     }
 
+    /// The adapter's driver and its version, as they name themselves.
+    pub fn driver(&self) -> Option<&str> {
+        self.gpu.as_ref().map(gpu::Gpu::driver)
+    }
+
     /// Renders a scene on a mesh as its plan says: by a method without tables.
     ///
     /// # Errors
@@ -210,7 +217,11 @@ impl Renderer {
             (std::mem::take(&mut order.cells), Vec::new())
         };
         let eye = EyeSpace::new(view, mesh, &device_mesh);
-        let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), extinction)?;
+        let longest = || tables::largest_thickness(mesh, &plan.cells) * device_mesh.scale;
+        let published = Published::new(plan, &tables, longest);
+        let [low, high] = mesh.local_bounds();
+        let across = low.distance(high) * device_mesh.scale;
+        let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), extinction, published, across)?;
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
             .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));

@@ -24,6 +24,7 @@ use tetlux_scene::{Lighting, Scene};
 use crate::RenderError;
 use crate::device_mesh::normalised;
 use crate::eye_space::EyeSpace;
+use crate::published::Published;
 
 /// Shares of the allowed error that the colour of a segment may take, without light and with it, and the light. The
 /// rest is for single precision and for what is hidden.
@@ -60,6 +61,9 @@ pub(crate) struct Look {
     pub(crate) brightest: f64,
     pub(crate) has_second: bool,
     pub(crate) function: Function,
+    /// Not the integrals of emission-absorption, but those of Song et al., and the unit distances per device unit.
+    pub(crate) published: Option<Published>,
+    pub(crate) emission: f32,
     pub(crate) light: Option<(LightUniform, Turning)>,
     /// Error of a segment's colour for an opacity of 1.
     pub(crate) color_error: f32,
@@ -107,7 +111,7 @@ fn mix<const N: usize>(front: [f32; N], back: [f32; N], u: f32) -> [f32; N] {
 
 impl Look {
     /// None where one field's transfer function is all there is: nothing is made then. `pieces` are its pieces,
-    /// `extinction` is that of opacity 1 per device unit.
+    /// `extinction` is that of opacity 1 per device unit, `across` the longest ray, in device units.
     ///
     /// # Errors
     ///
@@ -118,6 +122,8 @@ impl Look {
         eye: &EyeSpace,
         (pieces, weights): (&[Piece], Weights),
         extinction: f64,
+        published: Option<Published>,
+        across: f64,
     ) -> Result<Option<Look>, RenderError> {
         let bivariate = scene.classification.is_bivariate();
         if !bivariate && scene.lighting.is_none() {
@@ -133,11 +139,18 @@ impl Look {
             Classification::TwoFields(transfer) => {
                 Function::TwoFields(two_field_f32::axes(transfer, ranges, extinction))
             }
+            Classification::Widgets(function) if published.is_some() => {
+                Function::Widgets(widget_f32::widgets(&function.as_published(), ranges, extinction))
+            }
             Classification::Widgets(function) => Function::Widgets(widget_f32::widgets(function, ranges, extinction)),
             Classification::Image(image) => Function::Image(image_f32::image(image, ranges, extinction)),
         };
         let mut further: Vec<Further> = second.map(scalar_values).into_iter().collect();
         let mut brightest = scene.classification.brightest();
+        if published.is_some() {
+            // All along a ray may glow.
+            brightest *= across * extinction;
+        }
         let share = if scene.lighting.is_some() { COLOR_SHARE_LIT } else { COLOR_SHARE };
         let error = |share: f64| (share * scene.method.max_error).max(LEAST_ERROR) as f32;
         let mut light = None;
@@ -151,7 +164,16 @@ impl Look {
             let [ambient, diffuse, specular] = lighting.light.shares();
             brightest = brightest * (ambient + diffuse) + specular;
         }
-        Ok(Some(Look { further, brightest, has_second: bivariate, function, light, color_error: error(share) }))
+        Ok(Some(Look {
+            further,
+            brightest,
+            has_second: bivariate,
+            function,
+            published,
+            emission: extinction as f32,
+            light,
+            color_error: error(share),
+        }))
     }
 
     /// Both scalars' and the gradient's values at the two ends, of the first scalar's and those of [`Look::further`].
@@ -188,8 +210,14 @@ impl Look {
                 one(transfer_f32::integrate(pieces, segment.pieces, *weights, front[0], back[0], length))
             }
             Function::TwoFields([color, opacity]) => one(two_field_f32::integrate(color, opacity, front, back, length)),
-            Function::Widgets(widgets) => widgets_f32::integrate_share(widgets, front, back, length, self.color_error),
-            Function::Image(image) => image_f32::integrate_counted(image, front, back, length, self.color_error),
+            Function::Widgets(widgets) => match &self.published {
+                None => widgets_f32::integrate_share(widgets, front, back, length, self.color_error),
+                Some(published) => published.widgets(widgets, front, back, length, self.emission),
+            },
+            Function::Image(image) => match &self.published {
+                None => image_f32::integrate_counted(image, front, back, length, self.color_error),
+                Some(published) => published.image(image, front, back, length, self.emission),
+            },
         }
     }
 }

@@ -1,15 +1,17 @@
 //! Which tables of integrals a picture needs.
 
 use tetlux_mesh::TetMesh;
-use tetlux_scene::{Backend, Integrator, Plan, Scene};
+use tetlux_scene::{Integrator, Plan, Scene};
 use tetlux_tables::{Construction, Precision, TableKind, TableSpec, Thickness, TransferSpec};
 
 /// The tables that [`crate::Renderer::render_with`] wants for this plan, in single precision: none for most. Those of psi
-/// and q are the same for every scene; pre-integrated ones hold the scene's transfer function and the largest thickness
-/// of the plan's cells.
+/// and q and those of Song et al. are the same for every scene; pre-integrated ones hold the scene's transfer function and
+/// the largest thickness of the plan's cells.
 pub fn table_specs(scene: &Scene, mesh: &TetMesh, plan: &Plan) -> Vec<TableSpec> {
-    if plan.backend != Backend::Gpu {
-        return Vec::new();
+    match plan.integrator {
+        Integrator::Analytic => return TableSpec::widgets().to_vec(),
+        Integrator::Approximate => return vec![TableSpec::front_back()],
+        _ => {}
     }
     let Some(transfer) = scene.transfer() else { return Vec::new() };
     let table = |id: &str, size, kind| TableSpec { id: id.into(), kind, size, precision: Precision::F32 };
@@ -33,14 +35,12 @@ pub fn table_specs(scene: &Scene, mesh: &TetMesh, plan: &Plan) -> Vec<TableSpec>
             table("mean-extinction", [512, 512, 1], TableKind::MeanExtinction { transfer: transfer_spec() }),
             table("color-ratio", [128, 128, 32], TableKind::ColorRatio { transfer: transfer_spec() }),
         ],
-        Integrator::Auto | Integrator::Average | Integrator::Linear | Integrator::Direct | Integrator::Symmetric => {
-            Vec::new()
-        }
+        _ => Vec::new(),
     }
 }
 
 /// The longest edge of the cells, in world units: no segment is longer. 1 if there is none.
-fn largest_thickness(mesh: &TetMesh, cells: &[u32]) -> f64 {
+pub(crate) fn largest_thickness(mesh: &TetMesh, cells: &[u32]) -> f64 {
     let mut largest = 0.0f64;
     for &cell in cells {
         let p = mesh.cells()[cell as usize].map(|v| mesh.points()[v as usize].as_dvec3());

@@ -98,6 +98,7 @@ struct MethodTable {
     table_precision: TablePrecision,
     #[serde(default)]
     target: Target,
+    pieces: Option<u32>,
     max_error: Option<Spanned<f64>>,
 }
 
@@ -164,6 +165,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
             classification: method.classification,
             table_precision: method.table_precision,
             target: method.target,
+            pieces: method.pieces,
             max_error: max_error.unwrap_or(Method::default().max_error),
         },
         name: path.display().to_string(),

@@ -26,6 +26,7 @@ mod frequency;
 mod histogram;
 mod look;
 mod method;
+mod one_peak;
 mod plan;
 mod reason;
 mod view;

@@ -1,8 +1,9 @@
 //! What scenes of two fields, or with light, ask of a method.
 
-use crate::{CellProjection, Classification, Integrator, Interpolation, Scene};
+use crate::{CellProjection, Classification, Interpolation, Scene};
 
-/// Why the scene's method cannot be its own; `None` if it can, or if one field's transfer function is all there is.
+/// Why the scene's method cannot be its own but for the integrator, which the plan chooses by the function; `None` if it can,
+/// or if one field's transfer function is all there is.
 pub(crate) fn refusal(scene: &Scene) -> Option<String> {
     let bivariate = scene.classification.is_bivariate();
     let what = match (bivariate, scene.lighting.is_some()) {
@@ -24,11 +25,7 @@ pub(crate) fn refusal(scene: &Scene) -> Option<String> {
         let why = "which is for one field's transfer function alone";
         return instead(format!("classification \"{}\"", method.classification), why, "use post-exact");
     }
-    if bivariate && !matches!(method.integrator, Integrator::Auto | Integrator::Direct) {
-        let why = "which is for one field with a transfer function";
-        return instead(format!("integrator \"{}\"", method.integrator), why, "use direct");
-    }
-    if method.integrator.is_pre_integrated() {
+    if !bivariate && method.integrator.is_pre_integrated() {
         let why = "whose table holds whole segments, unlit";
         return instead(format!("integrator \"{}\"", method.integrator), why, "use direct");
     }

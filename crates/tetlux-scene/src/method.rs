@@ -136,6 +136,14 @@ named! {
         PreintLog,
         /// Pre-integrated with exact opacity, colour / alpha stored.
         PreintQ,
+        /// Widgets and images in as many pieces as the error allowed takes, opacity exact: the default for these.
+        Adaptive,
+        /// Widgets by the published analytic integrals and their tables: emission density, one peak a segment. Song et al.
+        /// 2009, section 4.
+        Analytic,
+        /// Widgets and images in equal pieces, classified at their ends, with the tables of F and B: emission density.
+        /// Song et al. 2009, section 5.
+        Approximate,
     }
 }
 
@@ -209,6 +217,9 @@ pub struct Method {
     pub table_precision: TablePrecision,
     /// The format of the picture while it is composited.
     pub target: Target,
+    /// Equal pieces a segment of [`Integrator::Approximate`], 1 to [`Method::MOST_PIECES`]; none:
+    /// [`Method::PUBLISHED_PIECES`].
+    pub pieces: Option<u32>,
     /// Largest error of a pixel's colour or alpha, linear, that `compare` accepts.
     pub max_error: f64,
 }
@@ -224,6 +235,7 @@ impl Default for Method {
             classification: Classification::Auto,
             table_precision: TablePrecision::Auto,
             target: Target::Auto,
+            pieces: None,
             // A quarter of an 8-bit step.
             max_error: 1e-3,
         }
@@ -233,7 +245,17 @@ impl Default for Method {
 impl Integrator {
     /// Whether it looks values up in a table.
     pub fn uses_table(self) -> bool {
-        matches!(self, Integrator::Psi | Integrator::Q) || self.is_pre_integrated()
+        matches!(self, Integrator::Psi | Integrator::Q) || self.is_pre_integrated() || self.is_published_bivariate()
+    }
+
+    /// Whether it is for widgets or images over two fields.
+    pub fn is_for_two_fields(self) -> bool {
+        self == Integrator::Adaptive || self.is_published_bivariate()
+    }
+
+    /// Whether it is one of Song et al. 2009, whose colours are an emission density: not multiplied by the extinction.
+    pub fn is_published_bivariate(self) -> bool {
+        matches!(self, Integrator::Analytic | Integrator::Approximate)
     }
 
     /// Whether its tables hold the transfer function.
@@ -243,6 +265,12 @@ impl Integrator {
 }
 
 impl Method {
+    /// Pieces a segment of the approximate mode as it was published (Song et al. 2009, section 5).
+    pub const PUBLISHED_PIECES: u32 = 10;
+
+    /// Most pieces a segment that may be asked for.
+    pub const MOST_PIECES: u32 = 1000;
+
     /// Why this combination cannot be, whatever the scene and the adapter; `None` if it can. `Auto` agrees with
     /// everything.
     pub fn refusal(&self) -> Option<String> {
@@ -297,6 +325,17 @@ impl Method {
                     .into(),
             );
         }
+        if let Some(reason) = self.refusal_of_pieces() {
+            return Some(reason);
+        }
+        if self.integrator.is_for_two_fields()
+            && !matches!(self.classification, Classification::Auto | Classification::PostExact)
+        {
+            return Some(format!(
+                "integrator \"{}\" classifies two fields along the segment: leave out --classification {}",
+                self.integrator, self.classification
+            ));
+        }
         if self.table_precision != TablePrecision::Auto
             && self.integrator != Integrator::Auto
             && !self.integrator.uses_table()
@@ -311,6 +350,16 @@ impl Method {
             ));
         }
         None
+    }
+
+    fn refusal_of_pieces(&self) -> Option<String> {
+        let pieces = self.pieces?;
+        if !(1..=Method::MOST_PIECES).contains(&pieces) {
+            return Some(format!("{pieces} pieces a segment: give 1 to {}", Method::MOST_PIECES));
+        }
+        (self.integrator != Integrator::Approximate).then(|| {
+            format!("integrator \"{}\" takes no number of pieces: --pieces is for approximate", self.integrator)
+        })
     }
 
     fn refusal_of_march(&self) -> Option<String> {
@@ -379,7 +428,8 @@ impl Method {
         if !matches!(self.interpolation, Interpolation::Auto | Interpolation::Ray) {
             return Some(format!("interpolation \"{}\"", self.interpolation));
         }
-        if !matches!(self.integrator, Integrator::Auto | Integrator::Direct | Integrator::Average) {
+        let both = matches!(self.integrator, Integrator::Auto | Integrator::Direct | Integrator::Average);
+        if !both && !self.integrator.is_for_two_fields() {
             return Some(format!("integrator \"{}\"", self.integrator));
         }
         if !matches!(self.classification, Classification::Auto | Classification::PostExact) {
@@ -403,9 +453,6 @@ impl Method {
                 CellProjection::Gator => Interpolation::Perspective,
                 _ => Interpolation::Ray,
             };
-        }
-        if method.integrator == Integrator::Auto {
-            method.integrator = Integrator::Direct;
         }
         if method.classification == Classification::Auto {
             method.classification = Classification::PostExact;
@@ -498,6 +545,12 @@ mod tests {
             (|m| (m.order, m.integrator) = (Order::Pixel, Integrator::Q), ["pixel", "\"q\""]),
             (|m| (m.backend, m.order) = (Backend::Gpu, Order::Pixel), ["pixel", "cpu"]),
             (|m| (m.integrator, m.table_precision) = (Integrator::Direct, TablePrecision::U8), ["direct", "table"]),
+            (|m| (m.integrator, m.pieces) = (Integrator::Analytic, Some(10)), ["analytic", "approximate"]),
+            (|m| (m.integrator, m.pieces) = (Integrator::Approximate, Some(0)), ["0 pieces", "1 to 1000"]),
+            (
+                |m| (m.integrator, m.classification) = (Integrator::Adaptive, Classification::Vertex),
+                ["adaptive", "vertex"],
+            ),
         ] {
             let reason = refused(change).unwrap_or_else(|| panic!("{words:?} is not refused"));
             assert!(words.iter().all(|word| reason.contains(word)), "{words:?}: {reason}");
@@ -514,7 +567,7 @@ mod tests {
                 assert_eq!(decided.refusal(), None);
             }
             assert!(decided.interpolation != Interpolation::Auto);
-            assert!(decided.integrator != Integrator::Auto && decided.classification != Classification::Auto);
+            assert!(decided.classification != Classification::Auto);
         }
     }
 }

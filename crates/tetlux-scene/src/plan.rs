@@ -3,10 +3,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::{ScalarField, TetMesh};
-use tetlux_optics::widget::Rectangle;
+use tetlux_optics::Classification::{Image, OneField, TwoFields, Widgets};
+use tetlux_optics::widget::{Rectangle, Shape, WaveProfile, Widget};
 
 use crate::file::gradient_name;
 use crate::look;
+use crate::one_peak::beyond_published;
 use crate::reason::{of_classification, of_integrator, of_interpolation, of_projection, of_table_precision, of_target};
 use crate::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError,
@@ -56,6 +58,8 @@ pub struct Plan {
     pub classification: Classification,
     /// The format of tables, where the integral has one.
     pub table_precision: TablePrecision,
+    /// Equal pieces a segment of [`Integrator::Approximate`].
+    pub pieces: u32,
     /// The format of the picture while it is composited.
     pub target: Target,
     /// The camera resolved.
@@ -85,13 +89,15 @@ impl Plan {
         if let Some(reason) = look::refusal(scene) {
             return Err(SceneError::Method(reason));
         }
+        let integrator = choose_integrator(scene)?;
         let (backend, backend_reason) = choose_backend(&scene.method, device)?;
         let projection = choose_projection(&scene.method, backend, device);
-        let (order, order_reason) = choose_order(scene, projection);
+        let (order, order_reason) = choose_order(scene, integrator, projection);
         let (target, target_reason) = choose_target(scene.method.target, projection, device);
         let (table_precision, fallback) = choose_table_precision(scene.method.table_precision, device);
-        let decided = Method { backend, order, projection, table_precision, target, ..scene.method.decided() };
-        let tables = backend == Backend::Gpu && decided.integrator.uses_table();
+        let decided =
+            Method { backend, order, projection, integrator, table_precision, target, ..scene.method.decided() };
+        let tables = integrator.uses_table();
         warnings.extend(fallback.filter(|_| tables));
         warnings.extend(doubts_of(order).map(String::from));
         if backend == Backend::Gpu && target != Target::Rgba32f {
@@ -101,6 +107,10 @@ impl Plan {
         if skips.no_data > 0 {
             warnings.push(format!("{} cells have vertices without a finite value and are left out", skips.no_data));
         }
+        let pieces = scene.method.pieces.unwrap_or(Method::PUBLISHED_PIECES);
+        if let (Integrator::Analytic, Widgets(function)) = (integrator, &scene.classification) {
+            warnings.extend(beyond_published(scene, mesh, &cells, function));
+        }
         let mut reasons =
             vec![("backend", format!("{backend}: {backend_reason}")), ("order", format!("{order}: {order_reason}"))];
         if backend == Backend::Gpu {
@@ -109,7 +119,7 @@ impl Plan {
                 reasons.push(("interpolation", says(decided.interpolation, of_interpolation)));
             }
         }
-        reasons.push(("integrator", integral_of(scene, decided.integrator)));
+        reasons.push(("integrator", integral_of(scene, integrator, pieces)));
         if tables {
             reasons.push(("table", says(table_precision, of_table_precision)));
         }
@@ -130,7 +140,7 @@ impl Plan {
                 skips.no_data
             ),
         ));
-        let Method { projection, interpolation, integrator, classification, .. } = decided;
+        let Method { projection, interpolation, classification, .. } = decided;
         Ok(Plan {
             backend,
             order,
@@ -139,6 +149,7 @@ impl Plan {
             integrator,
             classification,
             table_precision,
+            pieces,
             target,
             view,
             cells,
@@ -150,13 +161,13 @@ impl Plan {
 }
 
 /// The integral inside a cell and its error.
-fn integral_of(scene: &Scene, integrator: Integrator) -> String {
-    use tetlux_optics::Classification::{Image, OneField, TwoFields, Widgets};
+fn integral_of(scene: &Scene, integrator: Integrator, pieces: u32) -> String {
     let budget = scene.method.max_error;
-    let color = match &scene.classification {
-        OneField(_) => says(integrator, of_integrator),
-        TwoFields(_) => format!("{integrator}: cut at the nodes of both fields, relative error 1e-5"),
-        Widgets(_) | Image(_) => format!("adaptive: opacity exact, colour within the budget of {budget:e}"),
+    let color = match (integrator, &scene.classification) {
+        (_, TwoFields(_)) => format!("{integrator}: cut at the nodes of both fields, relative error 1e-5"),
+        (Integrator::Adaptive, _) => format!("adaptive: opacity exact, colour within the budget of {budget:e}"),
+        (Integrator::Approximate, _) => format!("{} ({pieces} equal pieces)", says(integrator, of_integrator)),
+        _ => says(integrator, of_integrator),
     };
     let lit = scene.lighting.as_ref().map_or(String::new(), |_| format!("; light in pieces by {budget:e} too"));
     color + &lit
@@ -174,6 +185,46 @@ impl std::fmt::Display for Plan {
         }
         Ok(())
     }
+}
+
+/// The integral that the classification has, unless one is asked for that it can have.
+fn choose_integrator(scene: &Scene) -> Result<Integrator, SceneError> {
+    let refuse = |message: String| Err(SceneError::Method(message));
+    let asked = scene.method.integrator;
+    let wants = |what: &str, use_instead: &str| {
+        refuse(format!("integrator \"{asked}\" is for {what}: use --integrator {use_instead}"))
+    };
+    if asked.is_published_bivariate() && scene.lighting.is_some() {
+        return refuse(format!(
+            "integrator \"{asked}\" has no light, as it was published: leave out [light], or use --integrator adaptive"
+        ));
+    }
+    match (asked, &scene.classification) {
+        (Integrator::Auto | Integrator::Adaptive, Widgets(_) | Image(_)) => Ok(Integrator::Adaptive),
+        (Integrator::Auto | Integrator::Direct, OneField(_) | TwoFields(_)) => Ok(Integrator::Direct),
+        (Integrator::Analytic, Widgets(function)) => match function.widgets.iter().any(is_sine_squared) {
+            true => refuse(
+                "integrator \"analytic\" has no sine-squared wave, as it was published: use shape = \"sine\", or \
+                 --integrator adaptive"
+                    .into(),
+            ),
+            false => Ok(asked),
+        },
+        (Integrator::Approximate, Widgets(_) | Image(_)) => Ok(asked),
+        (Integrator::Analytic, Image(_)) => {
+            wants("widgets, and an image has no closed form", "approximate or adaptive")
+        }
+        (Integrator::Adaptive | Integrator::Analytic | Integrator::Approximate, _) => {
+            wants("widgets and images, and a transfer function is cut at its nodes exactly", "direct")
+        }
+        (_, OneField(_)) => Ok(asked),
+        (_, TwoFields(_)) => wants("one field with a transfer function", "direct"),
+        (_, Widgets(_) | Image(_)) => wants("a transfer function", "adaptive"),
+    }
+}
+
+fn is_sine_squared(widget: &Widget) -> bool {
+    matches!(widget.shape(), Shape::Wave { profile: WaveProfile::SineSquared, .. })
 }
 
 /// What gradients are computed for, or that they are not.
@@ -281,11 +332,12 @@ fn choose_table_precision(asked: TablePrecision, device: Option<&Device>) -> (Ta
     }
 }
 
-fn choose_order(scene: &Scene, projection: CellProjection) -> (Order, String) {
+fn choose_order(scene: &Scene, integrator: Integrator, projection: CellProjection) -> (Order, String) {
     if projection == CellProjection::March {
         return (Order::None, "the march finds the next cell itself".into());
     }
-    let one_luminance = scene.single_luminance().is_some();
+    // What absorbs little may glow as much as what absorbs a lot, where emission is a density: order matters then.
+    let one_luminance = scene.single_luminance().is_some() && !integrator.is_published_bivariate();
     match scene.method.order {
         Order::Auto if one_luminance => {
             (Order::None, "there is one luminance throughout, so the order does not matter".into())

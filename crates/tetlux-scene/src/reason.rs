@@ -32,6 +32,11 @@ pub(crate) fn of_integrator(integrator: Integrator) -> &'static str {
         Integrator::PreintLog => {
             "pre-integrated, 256 x 256 scalars x 16 doubling thicknesses: 6 % too much between them"
         }
+        Integrator::Adaptive => "in pieces by the error allowed, opacity exact",
+        Integrator::Analytic => {
+            "as published, by tables: emission density, not the reference's model; a Gaussian ends at 3 sigma"
+        }
+        Integrator::Approximate => "as published, F and B by table: emission density, not the reference's model",
         Integrator::PreintQ => "pre-integrated mean extinction, 512 x 512, and colour / alpha, 128 x 128 x 32",
     }
 }

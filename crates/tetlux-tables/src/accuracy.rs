@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use tetlux_image::{Curve, Grid, Style, log_log};
 use tetlux_optics::accuracy::{POINTS, SETS, measure as measure_f32};
 use tetlux_optics::published_f32::linear_published;
 use tetlux_optics::segment_f32::{weights_average, weights_direct};
@@ -12,8 +13,6 @@ use crate::measure::{measure, measure_color_ratio, measure_widget};
 use crate::precision::Precision;
 use crate::spec::{Construction, Design, SpecError, TableKind, TableSpec, Thickness, TransferSpec};
 use crate::table::{MeasuredError, Table};
-
-mod plot;
 
 /// Number of sections that [`report`] tells of.
 pub const SECTIONS: u32 = 6;
@@ -67,7 +66,8 @@ pub fn report(plot_file: &str, done: impl Fn(&str)) -> Result<AccuracyReport, Sp
     done("widgets");
     markdown += &transfer_functions()?;
     done("transfer functions");
-    Ok(AccuracyReport { markdown, plot: plot::log_log("nodes along each axis", "largest error of w_b", &curves) })
+    let plot = log_log(["nodes along each axis", "largest error of w_b"], Grid::FirstCurve, &curves);
+    Ok(AccuracyReport { markdown, plot })
 }
 
 fn spec(kind: TableKind, size: [u32; 3], precision: Precision) -> TableSpec {
@@ -125,7 +125,7 @@ fn single_precision() -> Result<String, SpecError> {
     ))
 }
 
-fn parametrisations(plot_file: &str) -> Result<(String, Vec<plot::Curve>), SpecError> {
+fn parametrisations(plot_file: &str) -> Result<(String, Vec<Curve>), SpecError> {
     let kinds = [
         ("psi over x/(1+x) (Moreland and Angel)", TableKind::Psi),
         ("q, design Q", TableKind::Q { design: Design::Q }),
@@ -144,7 +144,7 @@ fn parametrisations(plot_file: &str) -> Result<(String, Vec<plot::Curve>), SpecE
         rows.push(row("max", &|error| error.max));
         rows.push(row("mean", &|error| error.mean));
         let points = SIZES.iter().zip(&errors).map(|(&n, error)| [f64::from(n), error.max]);
-        curves.push(plot::Curve { name: name.to_owned(), points: points.collect() });
+        curves.push(Curve { name: name.to_owned(), points: points.collect(), style: Style::Line });
     }
     let mut text = "## Tables of linear segments: parametrisation\n\n\
         Error of w_b, which is the error of the blended colour for luminances in [0, 1], bilinear in f32 against f64, \

@@ -14,6 +14,8 @@
 //! | [`TableKind::PreIntegrated`] | both scalars and the length | Röttger, Kraus and Ertl 2000; Kraus, Qiao and Ebert 2004 |
 //! | [`TableKind::MeanExtinction`], [`TableKind::ColorRatio`] | both scalars; optical depth as third | here; exact opacity |
 //!
+//! Whole segments by the tables of Song et al., as they were published: [`published`].
+//!
 //! ```
 //! use tetlux_tables::{Store, Table, TableSpec, measure, sample_weights};
 //!
@@ -43,6 +45,7 @@ mod measure;
 mod picture;
 mod precision;
 mod preintegration;
+pub mod published;
 mod spec;
 mod store;
 mod table;

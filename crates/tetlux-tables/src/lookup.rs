@@ -4,6 +4,7 @@
 
 use std::f32::consts::{FRAC_2_SQRT_PI, PI};
 
+use tetlux_optics::erf_f32::erf;
 use tetlux_optics::segment_f32::opacity;
 
 use crate::spec::{Design, TableKind};
@@ -87,7 +88,7 @@ pub fn sample_gaussian(table: &Table, p: f32, t0: f32, t1: f32) -> f32 {
     match table.spec().kind {
         TableKind::Gaussian { .. } => {
             let integral = |t: f32| at(table, [p, t, 0.0])[0];
-            (p * libm::erff(t0)).exp() * (integral(t1) - integral(t0))
+            (p * erf(t0)).exp() * (integral(t1) - integral(t0))
         }
         TableKind::GaussianBounded { max_t } => {
             let bounded = |t: f32| {

@@ -214,34 +214,47 @@ impl SpecError {
 impl TableSpec {
     /// Every table that `build-tables` makes unasked, in the order of the documentation.
     pub fn defaults() -> Vec<Self> {
-        let table = |id: &str, size: [u32; 3], kind| Self { id: id.to_owned(), kind, size, precision: Precision::F32 };
+        let [gaussian, sine, triangle] = Self::widgets();
         vec![
             Self::default_q(),
-            table("r", [192, 144, 1], TableKind::Q { design: Design::R }),
-            table("qe", [128, 128, 1], TableKind::QPair),
+            Self::single("r", [192, 144, 1], TableKind::Q { design: Design::R }),
+            Self::single("qe", [128, 128, 1], TableKind::QPair),
             Self::default_psi(),
-            table("fb3d", [64, 64, 64], TableKind::FrontBack { max_extinction: 10.0, max_length: 1.0 }),
-            table("gaussian", [256, 256, 1], TableKind::Gaussian { max_p: 10.0, max_t: 4.0 }),
-            table("gaussian-bounded", [256, 256, 1], TableKind::GaussianBounded { max_t: 4.0 }),
-            table("sine", [256, 256, 1], TableKind::Sine { max_m: 10.0 }),
-            table("sine-bounded", [256, 256, 1], TableKind::SineBounded),
-            table("triangle", [256, 256, 1], TableKind::Triangle { max_a: 10.0 }),
+            Self::front_back(),
+            gaussian,
+            Self::single("gaussian-bounded", [256, 256, 1], TableKind::GaussianBounded { max_t: 4.0 }),
+            sine,
+            Self::single("sine-bounded", [256, 256, 1], TableKind::SineBounded),
+            triangle,
         ]
+    }
+
+    fn single(id: &str, size: [u32; 3], kind: TableKind) -> Self {
+        Self { id: id.to_owned(), kind, size, precision: Precision::F32 }
+    }
+
+    /// The published tables of a Gaussian, a sine and a triangle wave: 256 x 256, f32 (Song et al. 2009).
+    pub fn widgets() -> [Self; 3] {
+        [
+            Self::single("gaussian", [256, 256, 1], TableKind::Gaussian { max_p: 10.0, max_t: 4.0 }),
+            Self::single("sine", [256, 256, 1], TableKind::Sine { max_m: 10.0 }),
+            Self::single("triangle", [256, 256, 1], TableKind::Triangle { max_a: 10.0 }),
+        ]
+    }
+
+    /// The published table of F and B: 64 x 64 x 64, f32 (Song et al. 2009).
+    pub fn front_back() -> Self {
+        Self::single("fb3d", [64, 64, 64], TableKind::FrontBack { max_extinction: 10.0, max_length: 1.0 })
     }
 
     /// The table a renderer takes unless told otherwise: q, design Q, 128 x 128, f32.
     pub fn default_q() -> Self {
-        Self {
-            id: "q".to_owned(),
-            kind: TableKind::Q { design: Design::Q },
-            size: [128, 128, 1],
-            precision: Precision::F32,
-        }
+        Self::single("q", [128, 128, 1], TableKind::Q { design: Design::Q })
     }
 
     /// The published table of psi: 512 x 512, f32 (Moreland and Angel 2004).
     pub fn default_psi() -> Self {
-        Self { id: "psi".to_owned(), kind: TableKind::Psi, size: [512, 512, 1], precision: Precision::F32 }
+        Self::single("psi", [512, 512, 1], TableKind::Psi)
     }
 
     /// The default table called `id`.

@@ -288,7 +288,8 @@ impl LookBytes {
             &place,
         ];
         let [width, height] = image.map_or([0; 2], |i| i.size);
-        let words = floats.concat().into_iter().map(f32::to_bits).chain([width, height, self.color_pieces, 0]);
+        let words =
+            floats.concat().into_iter().map(f32::to_bits).chain([width, height, self.color_pieces, 0, 0, 0, 0, 0]);
         words.flat_map(u32::to_ne_bytes).collect()
     }
 }

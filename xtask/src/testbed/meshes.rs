@@ -76,17 +76,21 @@ pub(crate) fn long_cells() -> Parts {
 
 /// Spacing in the middle of the graded cube over that at its surface.
 const GRADING: f64 = 1e-5;
-/// Hexahedra from its middle to its surface.
-const GRADED: usize = 10;
-
 /// The cube from -1 to 1, its spacings growing from the middle outwards by the same factor each: edges from 1e-5 to 1.
-pub(crate) fn graded_cube() -> Parts {
+/// There are so many hexahedra from its middle to its surface.
+pub(crate) fn graded(count: usize) -> Parts {
+    let half = count as f64;
     let place = |u: f64| {
-        let steps = ((2.0 * u - 1.0) * GRADED as f64).round();
-        let growth = GRADING.powf(-1.0 / (GRADED as f64 - 1.0));
-        steps.signum() * (growth.powf(steps.abs()) - 1.0) / (growth.powf(GRADED as f64) - 1.0)
+        let steps = ((2.0 * u - 1.0) * half).round();
+        let growth = GRADING.powf(-1.0 / (half - 1.0).max(1.0));
+        steps.signum() * (growth.powf(steps.abs()) - 1.0) / (growth.powf(half) - 1.0)
     };
-    grid([2 * GRADED; 3], Split::Six, |u| DVec3::new(place(u.x), place(u.y), place(u.z)))
+    grid([2 * count; 3], Split::Six, |u| DVec3::new(place(u.x), place(u.y), place(u.z)))
+}
+
+/// One of 48 000 cells.
+pub(crate) fn graded_cube() -> Parts {
+    graded(10)
 }
 
 /// The distance from the middle on a logarithmic scale: 0 there, 1 at distance 1.

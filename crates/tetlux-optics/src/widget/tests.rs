@@ -142,3 +142,27 @@ proptest! {
         prop_assert!(rim || close);
     }
 }
+
+#[test]
+fn as_published_a_gaussian_ends_at_three_sigma_and_nothing_else_changes() {
+    let bell = |support| Widget::new(Shape::Gaussian { center: [1.0, 2.0], sigma: [0.1, 0.5] }, support, 1.0, [1.0; 3]);
+    let band = Widget::new(
+        Shape::Wave { profile: WaveProfile::Triangle, frequency: [1.0, 0.0], offset: 0.0 },
+        None,
+        1.0,
+        [1.0; 3],
+    );
+    let half = Rectangle { s: [1.0, 9.0], g: [f64::NEG_INFINITY, 3.0] };
+    let away = Rectangle { s: [5.0, 9.0], g: [0.0, 3.0] };
+    let widgets = vec![bell(None).unwrap(), bell(Some(half)).unwrap(), bell(Some(away)).unwrap(), band.unwrap()];
+    let published = BivariateFunction { widgets: widgets.clone() }.as_published().widgets;
+    assert_eq!(published.len(), 3, "what ends before its rectangle begins is left out");
+    let close = |a: [f64; 2], b: [f64; 2]| (0..2).all(|i| (a[i] - b[i]).abs() < 1e-12);
+    for (widget, s, g) in [(&published[0], [0.7, 1.3], [0.5, 3.5]), (&published[1], [1.0, 1.3], [0.5, 3.0])] {
+        let support = widget.support().unwrap();
+        assert!(close(support.s, s) && close(support.g, g), "{support:?}");
+    }
+    assert_eq!(published[2], widgets[3]);
+    assert_eq!(published[0].opacity([1.0, 2.0]), 1.0);
+    assert_eq!(published[0].opacity([1.31, 2.0]), 0.0);
+}

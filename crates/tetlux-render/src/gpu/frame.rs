@@ -9,7 +9,7 @@ use super::picture::Picture;
 use super::pipelines::Pipelines;
 use super::spent::{Count, counters};
 use super::stretch::{scissor, stretches};
-use super::tables::{Lookup, binding_of, upload};
+use super::tables::{LAYERS, Lookup, binding_of, upload, upload_layers};
 use super::variant::{Binding, CELL_BYTES, Geometry, Variant};
 use super::{Drawn, Open};
 use crate::{Job, Resources};
@@ -114,15 +114,21 @@ impl<'a> Maker<'a> {
 /// The bind group of the tables, made.
 fn tables(make: &Maker, queue: &wgpu::Queue, layout: &wgpu::BindGroupLayout, job: &Job) -> wgpu::BindGroup {
     let mut lookup = Lookup { low: [[0.0; 4]; 2], range: [[1.0; 4]; 2], length: [job.table_length, 0.0, 0.0, 0.0] };
-    let textures: Vec<_> = job
-        .tables
-        .iter()
-        .map(|table| {
-            let (texture, bytes) = upload(make.device, queue, table, job.table_precision, &mut lookup);
-            make.count(0, 1, bytes);
-            (binding_of(table), texture.create_view(&wgpu::TextureViewDescriptor::default()))
-        })
-        .collect();
+    let mut view = |binding, (texture, bytes): (wgpu::Texture, u64)| {
+        make.count(0, 1, bytes);
+        (binding, texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    };
+    let textures: Vec<_> = match job.tables {
+        // Those of several widgets.
+        [first, others @ ..] if !others.is_empty() && job.tables.iter().all(|table| table.axes().len() == 2) => {
+            let layers = upload_layers(make.device, queue, first, others, job.table_precision, &mut lookup);
+            vec![view(LAYERS, layers)]
+        }
+        tables => {
+            let mut one = |table| upload(make.device, queue, table, job.table_precision, &mut lookup);
+            tables.iter().map(|table| view(binding_of(table), one(table))).collect()
+        }
+    };
     let lookup = make.filled("lookup", bytemuck::bytes_of(&lookup), wgpu::BufferUsages::UNIFORM);
     let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
     let textures = textures.iter().map(|(binding, view)| entry(*binding, wgpu::BindingResource::TextureView(view)));

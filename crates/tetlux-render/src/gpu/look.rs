@@ -8,6 +8,7 @@ use tetlux_shaders::Choice;
 
 use super::variant::Binding;
 use crate::look::{Function, Look};
+use crate::published::Published;
 
 /// What of a look makes one set of pipelines differ from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -25,15 +26,22 @@ pub(crate) enum Classified {
     TwoFields,
     Widgets,
     Image,
+    Analytic,
+    ApproximateWidgets,
+    ApproximateImage,
 }
 
 impl LookVariant {
     pub(crate) fn new(look: &Look) -> LookVariant {
-        let function = match look.function {
-            Function::OneField(..) => Classified::OneField,
-            Function::TwoFields(_) => Classified::TwoFields,
-            Function::Widgets(_) => Classified::Widgets,
-            Function::Image(_) => Classified::Image,
+        let function = match (&look.function, &look.published) {
+            (Function::OneField(..), _) => Classified::OneField,
+            (Function::TwoFields(_), _) => Classified::TwoFields,
+            (Function::Widgets(_), None) => Classified::Widgets,
+            (Function::Widgets(_), Some(Published::Analytic { .. })) => Classified::Analytic,
+            (Function::Widgets(_), Some(Published::Approximate { .. })) => Classified::ApproximateWidgets,
+            (Function::Image(_), None) => Classified::Image,
+            // An image has no analytic integrals: the plan sees to it.
+            (Function::Image(_), Some(_)) => Classified::ApproximateImage,
         };
         let second = look.further.first().filter(|_| look.has_second);
         let second_by_cell = second.is_some_and(|second| second.location == Location::Cell);
@@ -41,12 +49,18 @@ impl LookVariant {
     }
 
     /// The modules that stand for the axes of the shaders.
-    pub(crate) fn choices(&self) -> [Choice; 4] {
+    pub(crate) fn choices(&self) -> [Choice; 5] {
         let function = match self.function {
             Classified::OneField => "function::one_field",
             Classified::TwoFields => "function::two_fields",
             Classified::Widgets => "function::widgets",
             Classified::Image => "function::image",
+            Classified::Analytic => "function::analytic",
+            Classified::ApproximateWidgets | Classified::ApproximateImage => "function::approximate",
+        };
+        let sample = match self.function {
+            Classified::ApproximateImage => "sample::image",
+            _ => "sample::widgets",
         };
         let (quantity, shading) =
             if self.lit { ("quantity::lit", "shading::lit") } else { ("quantity::pair", "shading::two_scalars") };
@@ -55,7 +69,11 @@ impl LookVariant {
             (_, false) => "second::point",
             (_, true) => "second::cell",
         };
-        [("function", function), ("quantity", quantity), ("second", second), ("shading", shading)]
+        [("function", function), ("quantity", quantity), ("sample", sample), ("second", second), ("shading", shading)]
+    }
+
+    fn has_widgets(&self) -> bool {
+        matches!(self.function, Classified::Widgets | Classified::Analytic | Classified::ApproximateWidgets)
     }
 
     /// Whether its function is one of pieces.
@@ -69,8 +87,8 @@ impl LookVariant {
             (Binding::Seconds, self.function != Classified::OneField),
             (Binding::Gradients, self.lit),
             (Binding::Look, true),
-            (Binding::Widgets, self.function == Classified::Widgets),
-            (Binding::Texels, self.function == Classified::Image),
+            (Binding::Widgets, self.has_widgets()),
+            (Binding::Texels, matches!(self.function, Classified::Image | Classified::ApproximateImage)),
             (Binding::Spent, true),
         ]
         .into_iter()
@@ -92,12 +110,19 @@ pub(crate) struct LookUniform {
     pub(crate) origin: [f32; 2],
     pub(crate) size: [u32; 2],
     pub(crate) color_pieces: u32,
-    pub(crate) unused: u32,
+    pub(crate) pieces: u32,
+    pub(crate) emission: f32,
+    pub(crate) unit: f32,
+    pub(crate) unused: [f32; 2],
 }
 
 impl LookUniform {
     fn new(look: &Look) -> LookUniform {
-        let mut uniform = LookUniform { errors: [look.color_error, 0.0], ..LookUniform::default() };
+        let mut uniform =
+            LookUniform { errors: [look.color_error, 0.0], emission: look.emission, ..LookUniform::default() };
+        if let Some(Published::Approximate { pieces, unit, .. }) = look.published {
+            (uniform.pieces, uniform.unit) = (pieces, unit);
+        }
         if let Some((light, turning)) = &look.light {
             (uniform.shares, uniform.direction, uniform.silhouette) = (light.shares, light.direction, light.silhouette);
             (uniform.errors[1], uniform.slope, uniform.curvature) = (turning.error, turning.slope, turning.curvature);

@@ -203,10 +203,11 @@ impl Variant {
 
     /// The axes of the tables that are bound, beside their `Lookup`; none: bind group 2 is not there.
     pub(crate) fn tables(&self) -> &'static [wgpu::TextureViewDimension] {
-        use wgpu::TextureViewDimension::{D2, D3};
+        use wgpu::TextureViewDimension::{D2, D2Array, D3};
         match self.integrator {
             Integrator::Psi | Integrator::Q => &[D2],
-            Integrator::Preint | Integrator::PreintLog => &[D3],
+            Integrator::Preint | Integrator::PreintLog | Integrator::Approximate => &[D3],
+            Integrator::Analytic => &[D2Array],
             Integrator::PreintQ => &[D2, D3],
             _ => &[],
         }
@@ -255,7 +256,7 @@ mod tests {
                             && interpolation != Interpolation::Auto
                             && integrator != Integrator::Auto
                             && classification != Classification::Auto;
-                        if decided && method.refusal().is_none() {
+                        if decided && !integrator.is_for_two_fields() && method.refusal().is_none() {
                             let target = Target::ALL[variants.len() % Target::ALL.len()];
                             let [orthographic, cell_data] = [1, 2].map(|bit| variants.len() & bit != 0);
                             variants.push(Variant {
@@ -280,9 +281,19 @@ mod tests {
     /// Every look, each with the geometries that draw it.
     fn looks() -> Vec<Variant> {
         let mut looks = Vec::new();
-        for function in [Classified::OneField, Classified::TwoFields, Classified::Widgets, Classified::Image] {
+        for (function, integrator) in [
+            (Classified::OneField, Integrator::Direct),
+            (Classified::TwoFields, Integrator::Direct),
+            (Classified::Widgets, Integrator::Adaptive),
+            (Classified::Image, Integrator::Adaptive),
+            (Classified::Analytic, Integrator::Analytic),
+            (Classified::ApproximateWidgets, Integrator::Approximate),
+            (Classified::ApproximateImage, Integrator::Approximate),
+        ] {
             for (lit, second_by_cell) in [(false, false), (false, true), (true, false), (true, true)] {
-                let plain = function == Classified::OneField && (!lit || second_by_cell);
+                // Neither is drawn: one field without light is no look, and the published modes have none.
+                let plain = function == Classified::OneField && (!lit || second_by_cell)
+                    || lit && integrator.is_published_bivariate();
                 for projection in [CellProjection::Pt, CellProjection::Vicp] {
                     let variant = Variant {
                         group: false,
@@ -291,7 +302,7 @@ mod tests {
                         look: Some(LookVariant { function, second_by_cell, lit }),
                         projection,
                         interpolation: Interpolation::Ray,
-                        integrator: Integrator::Direct,
+                        integrator,
                         classification: Classification::PostExact,
                         target: Target::Rgba32f,
                     };
@@ -347,7 +358,11 @@ mod tests {
 
     #[test]
     fn a_march_of_every_look_binds_what_its_shader_names() {
-        for variant in looks().into_iter().map(|v| Variant { projection: CellProjection::March, ..v }) {
+        for variant in looks()
+            .into_iter()
+            .filter(|v| !v.integrator.uses_table())
+            .map(|v| Variant { projection: CellProjection::March, ..v })
+        {
             let module = validated("stages::march", &variant);
             let bindings = module.global_variables.iter().filter_map(|(_, v)| v.binding);
             let mut named: Vec<u32> = bindings.filter(|b| b.group == 0).map(|b| b.binding).collect();
@@ -358,7 +373,7 @@ mod tests {
     }
 
     /// What no scene of one field without light may hold.
-    const OF_LOOKS: [&str; 16] = [
+    const OF_LOOKS: [&str; 17] = [
         "function::",
         "lib::erf",
         "lib::further",
@@ -373,6 +388,7 @@ mod tests {
         "lib::widget",
         "quantity::lit",
         "quantity::pair",
+        "sample::",
         "second::",
         "shading::two_scalars",
     ];

@@ -49,7 +49,7 @@ fn look(mesh: &TetMesh, scene: &Scene) -> Result<Option<Look>, RenderError> {
     let device = DeviceMesh::new(mesh, &scene.scalar);
     let eye = EyeSpace::new(&scene.camera.view(scene.size).unwrap(), mesh, &device);
     let pieces = transfer_f32::pieces(&transfer(), scene.scalar.range, 1.0);
-    Look::new(scene, mesh.points().len(), &eye, (&pieces, Weights::Direct), 1.0)
+    Look::new(scene, mesh.points().len(), &eye, (&pieces, Weights::Direct), 1.0, None, 1.0)
 }
 
 fn shiny() -> Light {
