@@ -64,7 +64,7 @@ fn place(vertex_index: u32, instance_index: u32) -> Fragment {
         let v = c.vertices[k];
         at = v.pixel;
         ends = vec2<f32>(inverse_depth(v), 0.0);
-        front = quantity_of(c.scalars[k]);
+        front = quantity_of(c.scalars[k], c.names[k]);
         back = front;
     }
     fragment.position = at_pixel(at);
@@ -82,7 +82,7 @@ fn segment_in(fragment: Fragment) -> Segment {
         let cell = projected_cell(i);
         let c = corners(i);
         let reference = cell_reference(c.vertices, c.scalars, cell.gradient.w);
-        return cell_segment(cell.planes, linear_in(cell, reference, c.vertices, c.scalars), reference, at);
+        return cell_segment(cell.planes, linear_in(cell, reference, c.vertices, c.scalars, c.names), reference, at);
     }
     return segment_between(fragment.front, fragment.back, fragment.ends, at);
 }

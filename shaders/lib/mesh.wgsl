@@ -18,6 +18,8 @@ struct Batch {
 struct Corners {
     vertices: array<Vertex, 4>,
     scalars: vec4<f32>,
+    // In the mesh.
+    names: vec4<u32>,
     parity: f32,
 }
 
@@ -36,6 +38,7 @@ fn corners(i: u32) -> Corners {
     for (var k = 0u; k < 4u; k++) {
         corners.vertices[k] = vertex(points[names[k]].xyz);
     }
+    corners.names = names;
     corners.scalars = scalars_of(index, names);
     return corners;
 }

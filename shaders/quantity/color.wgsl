@@ -2,15 +2,15 @@
 // does between the vertices' scalars is lost: the artifact that classification after interpolation avoids.
 import package::lib::view::{Vertex};
 import package::lib::cell::{Cell, Reference, DEEP, STEEPEST, farthest_vertex};
-import package::lib::transfer::{piece_at, classify};
+import package::axes::attributes::{attributes_of};
 
 alias Quantity = vec4<f32>;
 
 // The derivatives by x, y and z, and the value at the reference vertex.
 alias Linear = array<vec4<f32>, 4>;
 
-fn quantity_of(scalar: f32) -> Quantity {
-    return classify(piece_at(scalar), scalar);
+fn quantity_of(scalar: f32, name: u32) -> Quantity {
+    return attributes_of(scalar, name);
 }
 
 // As it is stored, and back.
@@ -22,8 +22,13 @@ fn unpacked(stored: vec4<f32>) -> Quantity {
     return stored;
 }
 
-fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>) -> Linear {
-    let c = array<vec4<f32>, 4>(quantity_of(s.x), quantity_of(s.y), quantity_of(s.z), quantity_of(s.w));
+fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>, names: vec4<u32>) -> Linear {
+    let c = array<vec4<f32>, 4>(
+        quantity_of(s.x, names.x),
+        quantity_of(s.y, names.y),
+        quantity_of(s.z, names.z),
+        quantity_of(s.w, names.w),
+    );
     let e1 = v[1].frame - v[0].frame;
     let e2 = v[2].frame - v[0].frame;
     let e3 = v[3].frame - v[0].frame;

@@ -7,7 +7,7 @@ alias Quantity = f32;
 // The gradient and, in w, the value at the reference vertex; the least and the greatest value. The rest is unused.
 alias Linear = array<vec4<f32>, 4>;
 
-fn quantity_of(scalar: f32) -> Quantity {
+fn quantity_of(scalar: f32, name: u32) -> Quantity {
     return scalar;
 }
 
@@ -20,7 +20,7 @@ fn unpacked(stored: vec4<f32>) -> Quantity {
     return stored.x;
 }
 
-fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>) -> Linear {
+fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>, names: vec4<u32>) -> Linear {
     return Linear(
         vec4<f32>(cell.gradient.xyz, reference.scalar),
         vec4<f32>(reference.s, 0.0, 0.0),

@@ -28,6 +28,7 @@ macro_rules! modules {
 /// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
 pub const MODULES: &[(&str, &str)] = modules! {
     lib { balanced cell flat lookup mesh mesh_buffers plane published ray segment silhouette span symmetric thick transfer view volume walk }
+    attributes { classified given }
     data { cell point }
     geometry { balanced ray thick vicp }
     interpolation { perspective screen_linear }
@@ -44,6 +45,7 @@ pub type Choice = (&'static str, &'static str);
 
 /// The module of every axis that a scene takes unless told otherwise.
 pub const DEFAULTS: &[Choice] = &[
+    ("attributes", "attributes::classified"),
     ("data", "data::point"),
     ("geometry", "geometry::ray"),
     ("interpolation", "interpolation::perspective"),
@@ -238,7 +240,9 @@ mod tests {
             "interpolation::perspective" | "interpolation::screen_linear" | "source::stored" | "source::computed" => {
                 &[("geometry", "geometry::thick")]
             }
-            "quantity::color" => &[("shading", "shading::vertex")],
+            "quantity::color" | "attributes::classified" | "attributes::given" => {
+                &[("quantity", "quantity::color"), ("shading", "shading::vertex")]
+            }
             _ => &[],
         };
         choose(&choose(DEFAULTS, others), &[(axis, name)])

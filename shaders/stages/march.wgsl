@@ -32,7 +32,7 @@ const NONE = 0xffffffffu;
 
 fn corner_of(ray: Ray, cell: u32, name: u32) -> Corner {
     let frame = vertex(points[name].xyz).frame;
-    return Corner(name, offset_from(ray, frame), frame.z, quantity_of(scalar_of(cell, name)));
+    return Corner(name, offset_from(ray, frame), frame.z, quantity_of(scalar_of(cell, name), name));
 }
 
 // The triangle through which the ray leaves the cell between the triangle abc, through which it came in, and an apex: the

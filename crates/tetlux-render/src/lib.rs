@@ -32,6 +32,7 @@
 //! ```
 
 mod adaptive;
+mod attributes;
 #[cfg(test)]
 mod cell;
 mod device_mesh;
@@ -69,6 +70,7 @@ use tetlux_order::{OrderReport, Orderer};
 use tetlux_scene::{Backend, CellProjection, Classification, Device, Integrator, Plan, Scene, TablePrecision};
 use tetlux_tables::{Table, TableKind, TableSpec};
 
+use crate::attributes::Attributes;
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
@@ -101,6 +103,8 @@ struct Job<'a> {
     eye: EyeSpace,
     pieces: &'a [Piece],
     weights: Weights,
+    /// Luminance and extinction per device unit of the points, for the graphics back end, where they are given.
+    attributes: &'a [[f32; 4]],
     /// What the scene asks for beyond one field's transfer function.
     look: Option<Look>,
     /// The cells to draw, nearest first.
@@ -189,8 +193,12 @@ impl Renderer {
         let mut stages = Stages::default();
         let (mesh, view) = (model.mesh(), &plan.view);
         let mut order = order::order(&self.orderer, model, plan, &mut stages);
-        let device_mesh = stages.run("prepare", || DeviceMesh::new(mesh, &scene.scalar));
-        let extinction = 1.0 / (scene.unit_distance * device_mesh.scale);
+        let (device_mesh, extinction, attributes) = stages.run("prepare", || {
+            let device_mesh = DeviceMesh::new(mesh, &scene.scalar);
+            let extinction = 1.0 / (scene.unit_distance * device_mesh.scale);
+            let attributes = Attributes::new(scene, plan, extinction);
+            (device_mesh, extinction, attributes)
+        });
         // Of a function of two fields one piece of nothing.
         let pieces = scene
             .transfer()
@@ -209,7 +217,8 @@ impl Renderer {
             (std::mem::take(&mut order.cells), Vec::new())
         };
         let eye = EyeSpace::new(view, mesh, &device_mesh);
-        let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), extinction)?;
+        let on_cpu = attributes.as_ref().filter(|_| plan.backend == Backend::Cpu);
+        let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), on_cpu, extinction)?;
         if plan.backend == Backend::Gpu && look.is_some() {
             return Err(RenderError::CpuOnly);
         }
@@ -224,6 +233,7 @@ impl Renderer {
             eye,
             pieces: &pieces,
             weights,
+            attributes: attributes.as_ref().map_or(&[], |attributes| &attributes.values),
             look,
             order: &cells,
             groups: &order.groups,

@@ -1,4 +1,5 @@
-//! What a scene asks for beyond one field's transfer function: a second scalar, light, silhouettes.
+//! What a scene asks for beyond one field's transfer function: a second scalar, luminance and extinction at the vertices,
+//! light, silhouettes.
 //!
 //! A segment is shaded from the values at its two ends, between which they are linear: [`Look::shade`].
 //!
@@ -27,11 +28,13 @@ use tetlux_optics::light_f32::{LightUniform, half_way, lit, normal, silhouette_f
 use tetlux_optics::segment_f32::weights_direct;
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
 use tetlux_optics::two_field_f32;
+use tetlux_optics::vertex_f32;
 use tetlux_optics::widget_f32::{self, Widget};
 use tetlux_optics::widgets_f32::{self, Integrated};
 use tetlux_scene::{Lighting, Scene};
 
 use crate::RenderError;
+use crate::attributes::Attributes;
 use crate::device_mesh::normalised;
 use crate::eye_space::EyeSpace;
 
@@ -47,10 +50,11 @@ const LEAST_ERROR: f64 = 1e-6;
 /// A segment's light is held on no more pieces than this.
 const MOST_TURNS: f32 = 256.0;
 
-/// Luminance and extinction over normalised scalars.
+/// Luminance and extinction over normalised scalars, or as they are linear in each cell.
 #[derive(Debug)]
 enum Function {
     OneField(Vec<Piece>, Weights),
+    Vertex(Weights),
     TwoFields([Vec<Piece>; 2]),
     Widgets(Vec<Widget>),
     Image(Image),
@@ -67,7 +71,7 @@ pub(crate) struct Further {
 /// How segments are shaded, and the fields that it takes.
 #[derive(Debug)]
 pub(crate) struct Look {
-    /// The second scalar if there is one, then the gradient's coordinates in the axes of eye space if there is light.
+    /// The second scalar if there is one, or luminance and extinction if they are given; then the gradient's coordinates in the axes of eye space if there is light.
     pub(crate) further: Vec<Further>,
     /// The largest luminance, lit.
     pub(crate) brightest: f64,
@@ -107,6 +111,8 @@ pub(crate) struct Segment {
     /// Normalised scalars.
     pub(crate) front: [f32; 2],
     pub(crate) back: [f32; 2],
+    /// Luminance and extinction per device unit, where they are given.
+    pub(crate) colors: [[f32; 4]; 2],
     /// Gradients in eye space, of any unit.
     pub(crate) gradients: [Vec3; 2],
     /// In device units.
@@ -122,8 +128,8 @@ fn mix<const N: usize>(front: [f32; N], back: [f32; N], u: f32) -> [f32; N] {
 }
 
 impl Look {
-    /// None where one field's transfer function is all there is: nothing is made then. `pieces` are its pieces,
-    /// `extinction` is that of opacity 1 per device unit.
+    /// None where one field's transfer function is all there is: nothing is made then. `pieces` are its pieces, `attributes`
+    /// what takes their place, `extinction` is that of opacity 1 per device unit.
     ///
     /// # Errors
     ///
@@ -133,10 +139,11 @@ impl Look {
         points: usize,
         eye: &EyeSpace,
         (pieces, weights): (&[Piece], Weights),
+        attributes: Option<&Attributes>,
         extinction: f64,
     ) -> Result<Option<Look>, RenderError> {
         let bivariate = scene.classification.is_bivariate();
-        if !bivariate && scene.lighting.is_none() {
+        if !bivariate && scene.lighting.is_none() && attributes.is_none() {
             return Ok(None);
         }
         let second = scene.second.as_ref().filter(|_| bivariate);
@@ -145,6 +152,7 @@ impl Look {
         }
         let ranges = [scene.scalar.range, second.map_or([0.0, 1.0], |second| second.range)];
         let function = match &scene.classification {
+            _ if attributes.is_some() => Function::Vertex(weights),
             Classification::OneField(_) => Function::OneField(pieces.to_vec(), weights),
             Classification::TwoFields(transfer) => {
                 Function::TwoFields(two_field_f32::axes(transfer, ranges, extinction))
@@ -153,6 +161,7 @@ impl Look {
             Classification::Image(image) => Function::Image(image_f32::image(image, ranges, extinction)),
         };
         let mut further: Vec<Further> = second.map(scalar_values).into_iter().collect();
+        further.extend(attributes.into_iter().flat_map(attribute_values));
         let mut brightest = scene.classification.brightest();
         let (mut slope, mut curvature) = (0.0, 0.0);
         let mut light = None;
@@ -184,12 +193,15 @@ impl Look {
         }))
     }
 
-    /// Both scalars' and the gradient's values at the two ends, of the first scalar's and those of [`Look::further`].
+    /// Both scalars', the given and the gradient's values at the two ends, of the first scalar's and those of [`Look::further`].
     pub(crate) fn values(&self, first: [f32; 2], mut further: impl Iterator<Item = [f32; 2]>) -> Ends {
         let mut next = || further.next().unwrap_or_default();
         let second = if self.has_second { next() } else { [0.0; 2] };
+        let colors =
+            if matches!(self.function, Function::Vertex(_)) { [(); 4].map(|()| next()) } else { [[0.0; 2]; 4] };
         let [x, y, z] = [next(), next(), next()];
         Ends {
+            colors: [0, 1].map(|end| colors.map(|channel| channel[end])),
             scalars: [0, 1].map(|end| [first[end], second[end]]),
             gradients: [0, 1].map(|end| Vec3::new(x[end], y[end], z[end])),
         }
@@ -212,6 +224,10 @@ impl Look {
         match &self.function {
             Function::OneField(pieces, weights) => {
                 one(transfer_f32::integrate(pieces, segment.pieces, *weights, front[0], back[0], length))
+            }
+            Function::Vertex(weights) => {
+                let [front, back] = [from, to].map(|u| mix(segment.colors[0], segment.colors[1], u));
+                one(vertex_f32::shade(*weights, front, back, length))
             }
             Function::TwoFields([color, opacity]) => one(two_field_f32::integrate(color, opacity, front, back, length)),
             Function::Widgets(widgets) => widgets_f32::integrate_share(widgets, front, back, length, self.errors[0]),
@@ -274,6 +290,7 @@ impl Look {
 /// Values at the two ends of a segment.
 pub(crate) struct Ends {
     pub(crate) scalars: [[f32; 2]; 2],
+    pub(crate) colors: [[f32; 4]; 2],
     pub(crate) gradients: [Vec3; 2],
 }
 
@@ -292,6 +309,11 @@ fn angle_between(a: Vec3, b: Vec3) -> f32 {
 
 fn scalar_values(scalar: &ScalarField) -> Further {
     Further { location: scalar.location, values: scalar.values.iter().map(|&s| normalised(scalar, s)).collect() }
+}
+
+fn attribute_values(attributes: &Attributes) -> [Further; 4] {
+    let channel = |k: usize| attributes.values.iter().map(|value| f64::from(value[k])).collect();
+    [0, 1, 2, 3].map(|k| Further { location: attributes.location, values: channel(k) })
 }
 
 /// The gradient's coordinates in the axes of eye space, the longest gradient of length 1.

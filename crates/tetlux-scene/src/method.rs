@@ -382,7 +382,7 @@ impl Method {
         if !matches!(self.integrator, Integrator::Auto | Integrator::Direct | Integrator::Average) {
             return Some(format!("integrator \"{}\"", self.integrator));
         }
-        if !matches!(self.classification, Classification::Auto | Classification::PostExact) {
+        if self.classification == Classification::PostClip {
             return Some(format!("classification \"{}\"", self.classification));
         }
         if self.table_precision != TablePrecision::Auto {

@@ -96,6 +96,7 @@ impl<'a> Maker<'a> {
             Binding::CellScalars => self.filled("cell scalars", bytemuck::cast_slice(&job.mesh.cell_scalars), storage),
             Binding::Order => self.filled("order", bytemuck::cast_slice(job.order), storage),
             Binding::EntryPieces => self.filled("pieces of cells", bytemuck::cast_slice(job.entry_pieces), storage),
+            Binding::Attributes => self.filled("attributes of vertices", bytemuck::cast_slice(job.attributes), storage),
         }
     }
 }

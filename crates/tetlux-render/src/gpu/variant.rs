@@ -10,6 +10,8 @@ pub(crate) struct Variant {
     pub(crate) group: bool,
     pub(crate) orthographic: bool,
     pub(crate) cell_data: bool,
+    /// Luminance and extinction of the vertices are given.
+    pub(crate) given: bool,
     pub(crate) projection: CellProjection,
     pub(crate) interpolation: Interpolation,
     pub(crate) integrator: Integrator,
@@ -51,6 +53,7 @@ pub(crate) enum Binding {
     CellScalars = 4,
     Order = 5,
     EntryPieces = 6,
+    Attributes = 7,
 }
 
 impl Variant {
@@ -59,6 +62,7 @@ impl Variant {
             group: false,
             orthographic: plan.view.orthographic,
             cell_data,
+            given: plan.colors.is_some(),
             projection: plan.projection,
             interpolation: plan.interpolation,
             integrator: plan.integrator,
@@ -114,6 +118,7 @@ impl Variant {
             CellProjection::Gator => "source::computed",
             _ => "source::stored",
         };
+        let attributes = if self.given { "attributes::given" } else { "attributes::classified" };
         let data = if self.cell_data { "data::cell" } else { "data::point" };
         let output = match self.target {
             Target::Rgba8 => "output::straight",
@@ -123,6 +128,7 @@ impl Variant {
         choose(
             DEFAULTS,
             &[
+                ("attributes", attributes),
                 ("data", data),
                 ("geometry", geometry),
                 ("interpolation", interpolation),
@@ -160,7 +166,7 @@ impl Variant {
     /// The buffers of bind group 0 that the shaders read, ascending.
     pub(crate) fn bindings(&self) -> Vec<Binding> {
         let mut bindings = vec![Binding::View];
-        if !self.integrator.is_pre_integrated() {
+        if !self.integrator.is_pre_integrated() && !self.given {
             bindings.push(Binding::Pieces);
         }
         bindings.extend([Binding::Points, Binding::Cells]);
@@ -172,6 +178,9 @@ impl Variant {
         }
         if self.classification == Classification::PostClip {
             bindings.push(Binding::EntryPieces);
+        }
+        if self.given {
+            bindings.push(Binding::Attributes);
         }
         bindings
     }
@@ -232,16 +241,21 @@ mod tests {
                         if decided && method.refusal().is_none() {
                             let target = Target::ALL[variants.len() % Target::ALL.len()];
                             let [orthographic, cell_data] = [1, 2].map(|bit| variants.len() & bit != 0);
-                            variants.push(Variant {
+                            let variant = Variant {
                                 group: false,
                                 orthographic,
                                 cell_data,
+                                given: false,
                                 projection,
                                 interpolation,
                                 integrator,
                                 classification,
                                 target,
-                            });
+                            };
+                            variants.push(variant);
+                            if classification == Classification::Vertex {
+                                variants.push(Variant { given: true, cell_data: false, ..variant });
+                            }
                         }
                     }
                 }
