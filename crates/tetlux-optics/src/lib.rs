@@ -81,7 +81,7 @@ pub mod widgets_f32;
 
 pub use classification::Classification;
 pub use emission::EmissionConvention;
-pub use emphasis::{Boundary, Contour, Derivatives, Emphasis, EmphasisError, Fitted, Scales, Steepness};
+pub use emphasis::{Emphasis, EmphasisError};
 pub use image_function::{ImageFunction, ImageFunctionError};
 pub use light::{Light, LightError};
 pub use preset::{Preset, PresetError, read_preset};

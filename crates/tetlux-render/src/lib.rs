@@ -89,7 +89,7 @@ pub struct Frame {
     pub resources: Resources,
     /// How the cells were ordered.
     pub order: OrderReport,
-    /// The pieces that it took to keep to the error budget, where there are two fields or light.
+    /// The pieces that it took to keep to the error budget, where segments are shaded one by one.
     pub spent: Option<Spent>,
     /// Where the picture may be wrong, found on the way.
     pub warnings: Vec<String>,
@@ -199,6 +199,9 @@ impl Renderer {
             let attributes = Attributes::new(scene, plan, extinction);
             (device_mesh, extinction, attributes)
         });
+        if plan.colors.as_ref().is_some_and(|colors| colors.len() != mesh.points().len()) {
+            return Err(RenderError::Missing("luminance and opacity at every point"));
+        }
         // Of a function of two fields one piece of nothing.
         let pieces = scene
             .transfer()

@@ -85,7 +85,7 @@ pub(crate) struct Look {
     curvature: f32,
 }
 
-/// Segments that were shaded one by one: those of a scene with two fields or light.
+/// Segments that were shaded one by one: those of a scene with two fields, light, or classified at the vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spent {
     /// Segments of rays in cells.

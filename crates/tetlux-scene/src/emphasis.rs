@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::{Location, ScalarField, TetMesh};
-use tetlux_optics::{Derivatives, Emphasis, Fitted, Scales, TransferFunction};
+use tetlux_optics::TransferFunction;
+use tetlux_optics::emphasis::{Derivatives, Emphasis, Fitted, Scales};
 
 use crate::{SceneError, View};
 
