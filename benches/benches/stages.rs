@@ -147,6 +147,7 @@ fn reference(c: &mut Criterion) {
         second: None,
         classification: &classification,
         lighting: None,
+        colors: None,
         unit_distance: 1.0,
         tolerance: DEFAULT_TOLERANCE,
     };

@@ -64,7 +64,7 @@ fn place(vertex_index: u32, instance_index: u32) -> Fragment {
         let v = c.vertices[k];
         at = v.pixel;
         ends = vec2<f32>(inverse_depth(v), 0.0);
-        front = quantity_of(c.scalars[k]);
+        front = quantity_of(c.scalars[k], c.names[k]);
         back = front;
     }
     fragment.position = at_pixel(at);

@@ -79,7 +79,7 @@ fn point_over(c: Corners, area: vec4<f32>, members: u32) -> Point {
             point.w += w * share;
             // Linear in the picture is the quantity over depth.
             let part = select(share * (1.0 + w), share, ORTHOGRAPHIC);
-            point.quantity += quantity_of(c.scalars[i]) * part;
+            point.quantity += quantity_of(c.scalars[i], c.names[i]) * part;
             weight += part;
         }
     }

@@ -1,27 +1,27 @@
 // What is linear in a cell: luminance and, in w, extinction, classified at its vertices. Whatever the transfer function
 // does between the vertices' scalars is lost: the artifact that classification after interpolation avoids.
 import package::lib::cell::{Cell, Corners, Reference, DEEP, STEEPEST, farthest_vertex};
-import package::lib::transfer::{piece_at, classify};
 import package::axes::data::{CELLWISE, scalar_of};
+import package::axes::attributes::{attributes_of};
 
 alias Quantity = vec4<f32>;
 
 // The derivatives by x, y and z, and the value at the reference vertex.
 alias Linear = array<vec4<f32>, 4>;
 
-fn quantity_of(scalar: f32) -> Quantity {
-    return classify(piece_at(scalar), scalar);
+fn quantity_of(scalar: f32, name: u32) -> Quantity {
+    return attributes_of(scalar, name);
 }
 
 // At one of a cell's vertices.
 fn quantity_at(cell: u32, name: u32) -> Quantity {
-    return quantity_of(scalar_of(cell, name));
+    return quantity_of(scalar_of(cell, name), name);
 }
 
 // What a value carried over from the cell before is in this one.
 fn in_cell(value: Quantity, cell: u32) -> Quantity {
     if CELLWISE {
-        return quantity_of(scalar_of(cell, 0u));
+        return quantity_of(scalar_of(cell, 0u), 0u);
     }
     return value;
 }
@@ -38,7 +38,13 @@ fn unpacked(stored: vec4<f32>) -> Quantity {
 fn linear_in(cell: Cell, reference: Reference, corners: Corners) -> Linear {
     let v = corners.vertices;
     let s = corners.scalars;
-    let c = array<vec4<f32>, 4>(quantity_of(s.x), quantity_of(s.y), quantity_of(s.z), quantity_of(s.w));
+    let names = corners.names;
+    let c = array<vec4<f32>, 4>(
+        quantity_of(s.x, names.x),
+        quantity_of(s.y, names.y),
+        quantity_of(s.z, names.z),
+        quantity_of(s.w, names.w),
+    );
     let e1 = v[1].frame - v[0].frame;
     let e2 = v[2].frame - v[0].frame;
     let e3 = v[3].frame - v[0].frame;

@@ -7,7 +7,7 @@ alias Quantity = f32;
 // The gradient and, in w, the value at the reference vertex; the least and the greatest value. The rest is unused.
 alias Linear = array<vec4<f32>, 4>;
 
-fn quantity_of(scalar: f32) -> Quantity {
+fn quantity_of(scalar: f32, name: u32) -> Quantity {
     return scalar;
 }
 

@@ -1,4 +1,6 @@
 // Classified at the vertices: luminance and extinction are linear in the cell.
+//
+// The twin in Rust is tetlux-optics, vertex_f32.
 import package::lib::span::{Segment};
 import package::axes::weights::{weights};
 

@@ -32,6 +32,7 @@ pub const MODULES: &[(&str, &str)] = modules! {
         published ray segment silhouette span spent symmetric thick transfer two_fields view volume walk widget
         widget_tables widgets
     }
+    attributes { classified given }
     data { cell point }
     function { analytic approximate image one_field two_fields widgets }
     geometry { balanced ray thick vicp }
@@ -51,6 +52,7 @@ pub type Choice = (&'static str, &'static str);
 
 /// The module of every axis that a scene takes unless told otherwise.
 pub const DEFAULTS: &[Choice] = &[
+    ("attributes", "attributes::classified"),
     ("data", "data::point"),
     ("function", "function::one_field"),
     ("geometry", "geometry::ray"),
@@ -248,7 +250,9 @@ mod tests {
             "interpolation::perspective" | "interpolation::screen_linear" | "source::stored" | "source::computed" => {
                 &[("geometry", "geometry::thick")]
             }
-            "quantity::color" => &[("shading", "shading::vertex")],
+            "quantity::color" | "attributes::classified" | "attributes::given" => {
+                &[("quantity", "quantity::color"), ("shading", "shading::vertex")]
+            }
             "shading::two_scalars" | "quantity::pair" | "second::cell" | "second::point" => &[
                 ("function", "function::two_fields"),
                 ("quantity", "quantity::pair"),

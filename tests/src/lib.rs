@@ -138,6 +138,7 @@ pub fn scene(mesh: &TetMesh, transfer: TransferFunction, camera: Camera, size: [
         second: None,
         classification: Classification::OneField(transfer),
         lighting: None,
+        emphasis: None,
         unit_distance: 1.0,
         camera,
         size,
@@ -188,12 +189,14 @@ pub fn reference(mesh: &TetMesh, scene: &Scene) -> Vec<[f64; 4]> {
 /// The same with every ray moved by some pixels.
 pub fn reference_beside(mesh: &TetMesh, scene: &Scene, by: [f64; 2]) -> Vec<[f64; 4]> {
     let view = view(scene);
+    let colors = scene.emphasis.as_ref().map(|emphasis| emphasis.seen(mesh, &view));
     let caster = Caster::new(tetlux_reference::Scene {
         mesh,
         scalar: &scene.scalar,
         second: scene.second.as_ref(),
         classification: &scene.classification,
         lighting: scene.lighting.as_ref().map(|lighting| (&lighting.light, &lighting.gradients[..])),
+        colors: colors.as_deref(),
         unit_distance: scene.unit_distance,
         tolerance: REFERENCE_TOLERANCE,
     })

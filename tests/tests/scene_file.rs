@@ -8,6 +8,7 @@ use std::path::Path;
 use glam::DVec3;
 use tetlux_mesh::procedural::{Split, cuboid};
 use tetlux_mesh::{Field, TetMesh};
+use tetlux_optics::emphasis::{Boundary, Contour, Emphasis, Steepness};
 use tetlux_scene::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneFile,
     TablePrecision, Target, UnitDistance,
@@ -38,6 +39,9 @@ fn unknown_keys_are_named_with_their_line() {
     assert_says(&error_after("[[camera]]\n\nview_angel = 30.0"), &["a.toml:6:", "view_angel", "view_angle"]);
     assert_says(&error_after("[light]\ncolor = 1"), &["a.toml:5:", "color", "ambient"]);
     assert_says(&error("[transfer]\ncolours = []"), &["a.toml:2:", "colours"]);
+    assert_says(&error_after("[emphasis]\nedges = {}"), &["a.toml:5:", "edges", "boundary"]);
+    assert_says(&error_after("[emphasis]\ncontour = { value = 0.5 }"), &["a.toml:5:", "width"]);
+    assert_says(&error_after("[emphasis]\nboundary = { width = \"wide\" }"), &["a.toml:5:"]);
 }
 
 #[test]
@@ -79,6 +83,12 @@ fn impossible_values_are_named_with_key_and_line() {
         ("[[camera]]\nnear = inf", 5, "near"),
         ("[[camera]]\nposition = [0.0, 0.0, 0.0]\ndirection = [1.0, 0.0, 0.0]", 4, "camera"),
         ("[method]\nmax_error = 0.0", 5, "max_error"),
+        ("[emphasis]", 4, "silhouette = { power = 2.0 }"),
+        ("[emphasis]\ngradient = { range = [1.0, 1.0] }", 5, "gradient: range"),
+        ("[emphasis]\ngradient = { power = -1.0 }", 5, "gradient: power"),
+        ("[emphasis]\n\ncontour = { value = 1.0, width = 0.0 }", 6, "contour: width"),
+        ("[emphasis]\nboundary = { sigma = inf }", 5, "boundary: sigma"),
+        ("[emphasis]\nboundary = {}\nsilhouette = { power = nan }", 6, "silhouette: power"),
         ("[method]\nmax_error = nan", 5, "max_error"),
     ] {
         assert_says(&error_after(rest), &[&format!("a.toml:{line}:"), key]);
@@ -129,6 +139,43 @@ fn every_axis_of_the_method_is_a_key() {
         max_error: 0.5,
     };
     assert_eq!(method, expected);
+}
+
+#[test]
+fn an_emphasis_is_read_and_goes_with_one_field() {
+    let text = format!(
+        "{TRANSFER}[emphasis]\ngradient = {{ range = [0.5, 2.0], power = 2.0 }}\ncontour = {{ value = 0.5, width = 0.1 }}\n\
+         boundary = {{ sigma = 0.2, width = 0.1, threshold = 0.0 }}\nsilhouette = {{ power = 3.0 }}\n"
+    );
+    let given = Emphasis {
+        gradient: Some(Steepness { range: Some([0.5, 2.0]), power: 2.0 }),
+        contour: Some(Contour { value: 0.5, width: 0.1 }),
+        boundary: Some(Boundary { sigma: Some(0.2), width: Some(0.1), threshold: 0.0 }),
+        silhouette: Some(3.0),
+    };
+    assert_eq!(SceneFile::parse("a.toml", &text).unwrap().emphasis, Some(given));
+    let text = format!("{TRANSFER}[emphasis]\ngradient = {{}}\nboundary = {{}}\nsilhouette = {{}}\n");
+    let file = SceneFile::parse("a.toml", &text).unwrap();
+    let left_out = Emphasis {
+        gradient: Some(Steepness { range: None, power: 1.0 }),
+        contour: None,
+        boundary: Some(Boundary { sigma: None, width: None, threshold: 0.01 }),
+        silhouette: Some(1.0),
+    };
+    assert_eq!(file.emphasis, Some(left_out));
+    let parts = cuboid([1, 1, 1], Split::Five, [DVec3::ZERO, DVec3::ONE]);
+    let fields = vec![Field::point("x", 1, parts.sample(|p| p.x)), Field::cell("by cell", 1, vec![0.0; 5])];
+    let mesh = TetMesh::assemble(&parts.points, &parts.cells, fields).unwrap();
+    let bound = |field: &str, rest: &str| {
+        let text = format!("[field]\nname = \"{field}\"\n{TRANSFER}{rest}[emphasis]\nsilhouette = {{}}\n");
+        SceneFile::parse("a.toml", &text).unwrap().scene(&mesh, 0).map(|scene| scene.emphasis.is_some())
+    };
+    assert!(bound("x", "").unwrap());
+    assert_says(
+        &bound("x", "opacity_field = \"x\"\n").unwrap_err().to_string(),
+        &["a.toml", "[emphasis]", "one field"],
+    );
+    assert_says(&bound("by cell", "").unwrap_err().to_string(), &["by cell", "[emphasis]"]);
 }
 
 #[test]

@@ -56,6 +56,7 @@ impl Column {
             second: Some(&self.fields[1]),
             classification,
             lighting: None,
+            colors: None,
             unit_distance: 1.0 / EXTINCTION,
             tolerance: 1e-9,
         });

@@ -10,12 +10,14 @@ use crate::progress;
 
 /// The picture that the reference makes of a view's rays, each moved by some pixels.
 pub(crate) fn image(input: &Input, view: &View, by: [f64; 2]) -> Result<Image> {
+    let colors = input.scene.emphasis.as_ref().map(|emphasis| emphasis.seen(&input.mesh, view));
     let caster = Caster::new(tetlux_reference::Scene {
         mesh: &input.mesh,
         scalar: &input.scene.scalar,
         second: input.scene.second.as_ref(),
         classification: &input.scene.classification,
         lighting: input.scene.lighting.as_ref().map(|lighting| (&lighting.light, &lighting.gradients[..])),
+        colors: colors.as_deref(),
         unit_distance: input.scene.unit_distance,
         tolerance: DEFAULT_TOLERANCE,
     })?;

@@ -25,6 +25,8 @@
 //! | [`transfer_f32`] | whole segments in the shader's arithmetic |
 //! | [`light`], [`light_f32`] | shading by the gradient, silhouettes |
 //! | [`lit_f32`] | segments lit to a stated error, in f32 |
+//! | [`emphasis`] | opacity at the vertices, emphasised by first and second derivatives |
+//! | [`vertex_f32`] | segments of what is classified at the vertices, in the shader's arithmetic |
 //! | [`erf_f32`] | the error function as a shader has it |
 //! | [`widget_f32`], [`widgets_f32`] | widgets, and segments through any number of them to a stated error, in f32 |
 //! | [`two_field_f32`] | colour of one scalar, opacity of another, exact, in f32 |
@@ -51,6 +53,7 @@ pub mod accuracy;
 pub mod classification;
 pub mod color_space;
 pub mod emission;
+pub mod emphasis;
 pub mod erf_f32;
 pub mod image_f32;
 pub mod image_function;
@@ -70,6 +73,7 @@ mod testing;
 pub mod transfer;
 pub mod transfer_f32;
 pub mod two_field_f32;
+pub mod vertex_f32;
 pub mod widget;
 pub mod widget_f32;
 pub mod widget_integral;
@@ -77,6 +81,7 @@ pub mod widgets_f32;
 
 pub use classification::Classification;
 pub use emission::EmissionConvention;
+pub use emphasis::{Emphasis, EmphasisError};
 pub use image_function::{ImageFunction, ImageFunctionError};
 pub use light::{Light, LightError};
 pub use preset::{Preset, PresetError, read_preset};

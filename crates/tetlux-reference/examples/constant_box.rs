@@ -18,6 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         second: None,
         classification: &Classification::OneField(transfer),
         lighting: None,
+        colors: None,
         unit_distance: 1.0,
         tolerance: DEFAULT_TOLERANCE,
     };

@@ -30,6 +30,9 @@ pub struct Scene<'a> {
     pub classification: &'a Classification,
     /// A light, and the gradient of the first scalar at every point, per world length.
     pub lighting: Option<(&'a Light, &'a [DVec3])>,
+    /// Luminance (linear RGB) and opacity at every point, linear in each cell: they take the classification's place, of which
+    /// only the largest luminance is asked.
+    pub colors: Option<&'a [[f64; 4]]>,
     /// World length over which an opacity of 1 is an optical depth of 1; above 0.
     pub unit_distance: f64,
     /// Largest error of a ray's colour and alpha, above 0: see [`DEFAULT_TOLERANCE`]. Rounding adds some 1e-14, and
@@ -89,9 +92,10 @@ impl<'a> Caster<'a> {
     ///
     /// # Errors
     ///
-    /// If the scalar's length does not fit the mesh, or unit distance or tolerance is not finite and above 0.
+    /// If the length of the scalar, of the gradients or of the colours does not fit the mesh, a colour is negative or not
+    /// finite, or unit distance or tolerance is not finite and above 0.
     pub fn new(scene: Scene<'a>) -> Result<Self, ReferenceError> {
-        let Scene { mesh, scalar, second, classification, lighting, unit_distance, tolerance } = scene;
+        let Scene { mesh, scalar, second, classification, lighting, colors, unit_distance, tolerance } = scene;
         for scalar in [Some(scalar), second].into_iter().flatten() {
             let expected = match scalar.location {
                 Location::Point => mesh.points().len(),
@@ -114,6 +118,14 @@ impl<'a> Caster<'a> {
         {
             return Err(ReferenceError::Gradients { found: gradients.len(), expected: mesh.points().len() });
         }
+        if let Some(colors) = colors {
+            if colors.len() != mesh.points().len() {
+                return Err(ReferenceError::Colors { found: colors.len(), expected: mesh.points().len() });
+            }
+            if let Some(color) = colors.iter().find(|color| color.iter().any(|c| !(*c >= 0.0 && c.is_finite()))) {
+                return Err(ReferenceError::Color(*color));
+            }
+        }
         if !(unit_distance.is_finite() && unit_distance > 0.0) {
             return Err(ReferenceError::UnitDistance(unit_distance));
         }
@@ -123,10 +135,10 @@ impl<'a> Caster<'a> {
         let half_width = mesh.points().iter().fold(0.0, |m: f64, p| m.max(p.as_dvec3().abs().max_element()));
         let scale = 0.5 / power_of_two_below(half_width);
         let gradients = lighting.map(|(_, gradients)| gradients);
-        let mut space = Space { mesh, scalars: [Some(scalar), second], gradients, scale, empty: Vec::new() };
+        let mut space = Space { mesh, scalars: [Some(scalar), second], gradients, colors, scale, empty: Vec::new() };
         space.empty = (0..mesh.cells().len()).into_par_iter().map(|cell| is_empty(&space, cell)).collect();
         let hierarchy = Hierarchy::new(&space);
-        let definition = Definition::new(classification, lighting.map(|(light, _)| light));
+        let definition = Definition::new(classification, lighting.map(|(light, _)| light), colors.is_some());
         Ok(Self { hierarchy, space, integrator: Integrator::new(definition, tolerance), unit_distance })
     }
 

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use tetlux_optics::widget::{Rectangle, Shape, WaveProfile, Widget};
 use tetlux_optics::{Classification, Light};
 
-use crate::walk::{Segment, Values};
+use crate::walk::{GRADIENT, Segment, Values};
 
 /// More zeros and peaks of a wave than this are not cut at one by one.
 const MOST_CUTS: f64 = 65_536.0;
@@ -42,6 +42,8 @@ pub(crate) struct Appearance {
 pub(crate) struct Definition<'a> {
     classification: &'a Classification,
     light: Option<&'a Light>,
+    /// Luminance and opacity are what is known of a point.
+    given: bool,
     /// Control points of a transfer function: of the luminance and of the opacity. Of an image, its nodes along the
     /// first and the second axis.
     color_points: Vec<f64>,
@@ -49,7 +51,7 @@ pub(crate) struct Definition<'a> {
 }
 
 impl<'a> Definition<'a> {
-    pub(crate) fn new(classification: &'a Classification, light: Option<&'a Light>) -> Self {
+    pub(crate) fn new(classification: &'a Classification, light: Option<&'a Light>, given: bool) -> Self {
         let (color_points, opacity_points) = match classification {
             Classification::OneField(transfer) => (transfer.control_points(), transfer.control_points()),
             Classification::TwoFields(transfer) => (
@@ -66,7 +68,7 @@ impl<'a> Definition<'a> {
             }
             Classification::Widgets(_) => (Vec::new(), Vec::new()),
         };
-        Self { classification, light, color_points, opacity_points }
+        Self { classification, light, given, color_points, opacity_points }
     }
 
     /// The largest luminance, at least 1: what an error of the transmittance may cost.
@@ -90,6 +92,8 @@ impl<'a> Definition<'a> {
     pub(crate) fn cuts(&self, segment: &Segment, sight: &Sight, cuts: &mut Vec<f64>) {
         let [front, back] = segment.values;
         match self.classification {
+            // Linear throughout.
+            _ if self.given => {}
             Classification::OneField(_) => crossings(&self.color_points, [front[0], back[0]], cuts),
             Classification::TwoFields(_) | Classification::Image(_) => {
                 crossings(&self.color_points, [front[0], back[0]], cuts);
@@ -137,6 +141,10 @@ impl<'a> Definition<'a> {
     }
 
     fn classify(&self, inside: &Inside, values: &Values) -> (f64, [f64; 3]) {
+        if self.given {
+            let [r, g, b, opacity, ..] = *values;
+            return (opacity, [r, g, b]);
+        }
         match self.classification {
             Classification::OneField(transfer) | Classification::TwoFields(transfer) => {
                 let within = |s: f64, [low, high]: [f64; 2]| {
@@ -180,7 +188,7 @@ fn distinct(values: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 fn gradient(values: &Values) -> DVec3 {
-    DVec3::new(values[2], values[3], values[4])
+    DVec3::new(values[GRADIENT], values[GRADIENT + 1], values[GRADIENT + 2])
 }
 
 /// The ascending `points` around a value; one at the value is below it. Infinite at the ends of the axis.

@@ -26,6 +26,17 @@ pub enum ReferenceError {
         /// Points of the mesh.
         expected: usize,
     },
+    /// The colours do not belong to the mesh.
+    #[error("there are {found} colours for {expected} points: take them from this mesh")]
+    Colors {
+        /// Colours there are.
+        found: usize,
+        /// Points of the mesh.
+        expected: usize,
+    },
+    /// A colour is none.
+    #[error("the colour {0:?} of a point must be finite and at least 0")]
+    Color([f64; 4]),
     /// The unit distance is not a length.
     #[error("the unit distance is {0}: it must be finite and above 0, in world units")]
     UnitDistance(f64),

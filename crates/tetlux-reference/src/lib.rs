@@ -30,6 +30,7 @@
 //!     second: None,
 //!     classification: &Classification::OneField(transfer),
 //!     lighting: None,
+//!     colors: None,
 //!     unit_distance: 1.0,
 //!     tolerance: DEFAULT_TOLERANCE,
 //! };

@@ -141,7 +141,7 @@ mod tests {
         let mut index = 0;
         points.map(|position| {
             index += 1;
-            Vertex { index, position, t: 0.0, values: [0.0; 5] }
+            Vertex { index, position, t: 0.0, values: Values::default() }
         })
     }
 

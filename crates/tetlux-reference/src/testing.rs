@@ -35,6 +35,7 @@ impl Body {
             second: None,
             classification,
             lighting: None,
+            colors: None,
             unit_distance: 1.0,
             tolerance: DEFAULT_TOLERANCE,
         }

@@ -6,8 +6,12 @@ use tetlux_mesh::{Location, NONE, ScalarField, TetMesh};
 use crate::hierarchy::{BoundaryFace, Hierarchy};
 use crate::line::{Line, Vertex};
 
-/// What is known of a point: the two scalars, and the gradient of the first. What a scene does not use is 0.
-pub(crate) type Values = [f64; 5];
+/// What is known of a point: what it is classified by, which is two scalars, or its luminance and opacity themselves; from
+/// [`GRADIENT`] on the gradient of the first scalar. What a scene does not use is 0.
+pub(crate) type Values = [f64; 7];
+
+/// Where the gradient begins.
+pub(crate) const GRADIENT: usize = 4;
 
 /// A stretch of a line with all values linear along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +38,8 @@ pub(crate) struct Space<'a> {
     pub(crate) scalars: [Option<&'a ScalarField>; 2],
     /// The gradient of the first scalar at the points, if it is asked for.
     pub(crate) gradients: Option<&'a [DVec3]>,
+    /// Luminance and opacity at the points, if they are given.
+    pub(crate) colors: Option<&'a [[f64; 4]]>,
     /// Power of two that takes the mesh's half-width into [0.5, 1).
     pub(crate) scale: f64,
     /// Cells without optical depth: flat, or with a value missing.
@@ -51,13 +57,17 @@ impl Space<'_> {
             scalar.filter(|s| s.location == Location::Point).map_or(0.0, |s| s.values[index as usize])
         };
         let [x, y] = self.scalars.map(by_point);
+        let [a, b, c, d] = self.colors.map_or([x, y, 0.0, 0.0], |colors| colors[index as usize]);
         let gradient = self.gradients.map_or(DVec3::ZERO, |gradients| gradients[index as usize]);
-        let values = [x, y, gradient.x, gradient.y, gradient.z];
+        let values = [a, b, c, d, gradient.x, gradient.y, gradient.z];
         Vertex { index, position, t: line.parameter(position), values }
     }
 
     /// The values of a segment in a cell, with those that are the cell's own.
     fn in_cell(&self, cell: usize, mut values: [Values; 2]) -> [Values; 2] {
+        if self.colors.is_some() {
+            return values;
+        }
         for (axis, scalar) in self.scalars.into_iter().enumerate() {
             if let Some(scalar) = scalar.filter(|s| s.location == Location::Cell) {
                 for end in &mut values {

@@ -163,6 +163,7 @@ impl Gpu {
         for (what, needed, unit, limit) in [
             ("the mesh's points", size_of_val(&job.mesh.points[..]) as u64, "bytes", binding),
             ("the mesh's cells", size_of_val(&job.mesh.cells[..]) as u64, "bytes", binding),
+            ("the vertices' luminance and extinction", size_of_val(job.attributes) as u64, "bytes", binding),
             ("the transfer function", size_of_val(job.pieces) as u64, "bytes", binding),
             ("the gradients or the image", job.look.as_ref().map_or(0, look::largest), "bytes", binding),
             ("the order of the cells", size_of_val(job.order) as u64, "bytes", binding),

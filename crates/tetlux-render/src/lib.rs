@@ -32,6 +32,7 @@
 //! ```
 
 mod adaptive;
+mod attributes;
 #[cfg(test)]
 mod cell;
 mod device_mesh;
@@ -70,6 +71,7 @@ use tetlux_order::{OrderReport, Orderer};
 use tetlux_scene::{Backend, CellProjection, Classification, Device, Integrator, Plan, Scene, TablePrecision};
 use tetlux_tables::{Table, TableKind, TableSpec};
 
+use crate::attributes::Attributes;
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
@@ -90,7 +92,7 @@ pub struct Frame {
     pub resources: Resources,
     /// How the cells were ordered.
     pub order: OrderReport,
-    /// The pieces that it took to keep to the error budget, where there are two fields or light.
+    /// The pieces that it took to keep to the error budget, where segments are shaded one by one.
     pub spent: Option<Spent>,
     /// Where the picture may be wrong, found on the way.
     pub warnings: Vec<String>,
@@ -104,6 +106,8 @@ struct Job<'a> {
     eye: EyeSpace,
     pieces: &'a [Piece],
     weights: Weights,
+    /// Luminance and extinction per device unit of the points, for the graphics back end, where they are given.
+    attributes: &'a [[f32; 4]],
     /// What the scene asks for beyond one field's transfer function.
     look: Option<Look>,
     /// The cells to draw, nearest first.
@@ -197,8 +201,15 @@ impl Renderer {
         let mut stages = Stages::default();
         let (mesh, view) = (model.mesh(), &plan.view);
         let mut order = order::order(&self.orderer, model, plan, &mut stages);
-        let device_mesh = stages.run("prepare", || DeviceMesh::new(mesh, &scene.scalar));
-        let extinction = 1.0 / (scene.unit_distance * device_mesh.scale);
+        let (device_mesh, extinction, attributes) = stages.run("prepare", || {
+            let device_mesh = DeviceMesh::new(mesh, &scene.scalar);
+            let extinction = 1.0 / (scene.unit_distance * device_mesh.scale);
+            let attributes = Attributes::new(scene, plan, extinction);
+            (device_mesh, extinction, attributes)
+        });
+        if plan.colors.as_ref().is_some_and(|colors| colors.len() != mesh.points().len()) {
+            return Err(RenderError::Missing("luminance and opacity at every point"));
+        }
         // Of a function of two fields one piece of nothing.
         let pieces = scene
             .transfer()
@@ -221,7 +232,9 @@ impl Renderer {
         let published = Published::new(plan, &tables, longest);
         let [low, high] = mesh.local_bounds();
         let across = low.distance(high) * device_mesh.scale;
-        let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), extinction, published, across)?;
+        let on_cpu = attributes.as_ref().filter(|_| plan.backend == Backend::Cpu);
+        let look =
+            Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), on_cpu, extinction, published, across)?;
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
             .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
@@ -233,6 +246,7 @@ impl Renderer {
             eye,
             pieces: &pieces,
             weights,
+            attributes: attributes.as_ref().map_or(&[], |attributes| &attributes.values),
             look,
             order: &cells,
             groups: &order.groups,

@@ -1,4 +1,5 @@
-//! What a scene asks for beyond one field's transfer function: a second scalar, light, silhouettes.
+//! What a scene asks for beyond one field's transfer function: a second scalar, luminance and extinction at the vertices,
+//! light, silhouettes.
 //!
 //! A segment is shaded from the values at its two ends, between which they are linear: [`Look::shade`].
 //!
@@ -17,11 +18,13 @@ use tetlux_optics::light_f32::LightUniform;
 use tetlux_optics::lit_f32::{Turning, integrate_lit};
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
 use tetlux_optics::two_field_f32;
+use tetlux_optics::vertex_f32;
 use tetlux_optics::widget_f32::{self, Widget};
 use tetlux_optics::widgets_f32::{self, Integrated};
 use tetlux_scene::{Lighting, Scene};
 
 use crate::RenderError;
+use crate::attributes::Attributes;
 use crate::device_mesh::normalised;
 use crate::eye_space::EyeSpace;
 use crate::published::Published;
@@ -35,10 +38,11 @@ const LIGHT_SHARE: f64 = 0.4;
 /// What single precision cannot hold is not asked for.
 const LEAST_ERROR: f64 = 1e-6;
 
-/// Luminance and extinction over normalised scalars.
+/// Luminance and extinction over normalised scalars, or as they are linear in each cell.
 #[derive(Debug)]
 pub(crate) enum Function {
     OneField(Vec<Piece>, Weights),
+    Vertex(Weights),
     TwoFields([Vec<Piece>; 2]),
     Widgets(Vec<Widget>),
     Image(Image),
@@ -55,7 +59,7 @@ pub(crate) struct Further {
 /// How segments are shaded, and the fields that it takes.
 #[derive(Debug)]
 pub(crate) struct Look {
-    /// The second scalar if there is one, then the gradient's coordinates in the axes of eye space if there is light.
+    /// The second scalar if there is one, or luminance and extinction if they are given; then the gradient's coordinates in the axes of eye space if there is light.
     pub(crate) further: Vec<Further>,
     /// The largest luminance, lit.
     pub(crate) brightest: f64,
@@ -69,7 +73,7 @@ pub(crate) struct Look {
     pub(crate) color_error: f32,
 }
 
-/// Segments that were shaded one by one: those of a scene with two fields or light.
+/// Segments that were shaded one by one: those of a scene with two fields, light, or classified at the vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spent {
     /// Segments of rays in cells.
@@ -95,6 +99,8 @@ pub(crate) struct Segment {
     /// Normalised scalars.
     pub(crate) front: [f32; 2],
     pub(crate) back: [f32; 2],
+    /// Luminance and extinction per device unit, where they are given.
+    pub(crate) colors: [[f32; 4]; 2],
     /// Gradients in eye space, of any unit.
     pub(crate) gradients: [Vec3; 2],
     /// In device units.
@@ -111,7 +117,7 @@ fn mix<const N: usize>(front: [f32; N], back: [f32; N], u: f32) -> [f32; N] {
 
 impl Look {
     /// None where one field's transfer function is all there is: nothing is made then. `pieces` are its pieces,
-    /// `extinction` is that of opacity 1 per device unit, `across` the longest ray, in device units.
+    /// `attributes` what takes their place, `extinction` is that of opacity 1 per device unit, `across` the longest ray, in device units.
     ///
     /// # Errors
     ///
@@ -121,12 +127,13 @@ impl Look {
         points: usize,
         eye: &EyeSpace,
         (pieces, weights): (&[Piece], Weights),
+        attributes: Option<&Attributes>,
         extinction: f64,
         published: Option<Published>,
         across: f64,
     ) -> Result<Option<Look>, RenderError> {
         let bivariate = scene.classification.is_bivariate();
-        if !bivariate && scene.lighting.is_none() {
+        if !bivariate && scene.lighting.is_none() && attributes.is_none() {
             return Ok(None);
         }
         let second = scene.second.as_ref().filter(|_| bivariate);
@@ -135,6 +142,7 @@ impl Look {
         }
         let ranges = [scene.scalar.range, second.map_or([0.0, 1.0], |second| second.range)];
         let function = match &scene.classification {
+            _ if attributes.is_some() => Function::Vertex(weights),
             Classification::OneField(_) => Function::OneField(pieces.to_vec(), weights),
             Classification::TwoFields(transfer) => {
                 Function::TwoFields(two_field_f32::axes(transfer, ranges, extinction))
@@ -146,6 +154,7 @@ impl Look {
             Classification::Image(image) => Function::Image(image_f32::image(image, ranges, extinction)),
         };
         let mut further: Vec<Further> = second.map(scalar_values).into_iter().collect();
+        further.extend(attributes.into_iter().flat_map(attribute_values));
         let mut brightest = scene.classification.brightest();
         if published.is_some() {
             // All along a ray may glow.
@@ -176,12 +185,15 @@ impl Look {
         }))
     }
 
-    /// Both scalars' and the gradient's values at the two ends, of the first scalar's and those of [`Look::further`].
+    /// Both scalars', the given and the gradient's values at the two ends, of the first scalar's and those of [`Look::further`].
     pub(crate) fn values(&self, first: [f32; 2], mut further: impl Iterator<Item = [f32; 2]>) -> Ends {
         let mut next = || further.next().unwrap_or_default();
         let second = if self.has_second { next() } else { [0.0; 2] };
+        let colors =
+            if matches!(self.function, Function::Vertex(_)) { [(); 4].map(|()| next()) } else { [[0.0; 2]; 4] };
         let [x, y, z] = [next(), next(), next()];
         Ends {
+            colors: [0, 1].map(|end| colors.map(|channel| channel[end])),
             scalars: [0, 1].map(|end| [first[end], second[end]]),
             gradients: [0, 1].map(|end| Vec3::new(x[end], y[end], z[end])),
         }
@@ -209,6 +221,10 @@ impl Look {
             Function::OneField(pieces, weights) => {
                 one(transfer_f32::integrate(pieces, segment.pieces, *weights, front[0], back[0], length))
             }
+            Function::Vertex(weights) => {
+                let [front, back] = [from, to].map(|u| mix(segment.colors[0], segment.colors[1], u));
+                one(vertex_f32::shade(*weights, front, back, length))
+            }
             Function::TwoFields([color, opacity]) => one(two_field_f32::integrate(color, opacity, front, back, length)),
             Function::Widgets(widgets) => match &self.published {
                 None => widgets_f32::integrate_share(widgets, front, back, length, self.color_error),
@@ -225,11 +241,17 @@ impl Look {
 /// Values at the two ends of a segment.
 pub(crate) struct Ends {
     pub(crate) scalars: [[f32; 2]; 2],
+    pub(crate) colors: [[f32; 4]; 2],
     pub(crate) gradients: [Vec3; 2],
 }
 
 fn scalar_values(scalar: &ScalarField) -> Further {
     Further { location: scalar.location, values: scalar.values.iter().map(|&s| normalised(scalar, s)).collect() }
+}
+
+fn attribute_values(attributes: &Attributes) -> [Further; 4] {
+    let channel = |k: usize| attributes.values.iter().map(|value| f64::from(value[k])).collect();
+    [0, 1, 2, 3].map(|k| Further { location: attributes.location, values: channel(k) })
 }
 
 /// The gradient's coordinates in the axes of eye space, the longest gradient of length 1.

@@ -1,5 +1,6 @@
 //! The scene file as TOML: keys, types, and the places of impossible values.
 
+mod emphasis;
 mod light;
 mod transfer;
 mod widget;
@@ -16,6 +17,7 @@ use crate::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneError,
     SceneFile, TablePrecision, Target,
 };
+use emphasis::EmphasisTable;
 use light::LightTable;
 use transfer::Transfer;
 use widget::WidgetTable;
@@ -33,6 +35,7 @@ struct Document {
     #[serde(default)]
     widget: Vec<Spanned<WidgetTable>>,
     light: Option<Spanned<LightTable>>,
+    emphasis: Option<Spanned<EmphasisTable>>,
     #[serde(default)]
     camera: Vec<Spanned<Camera>>,
     #[serde(default)]
@@ -115,7 +118,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
     })?;
     let beside = |file: PathBuf| path.parent().unwrap_or(Path::new("")).join(file);
 
-    let Document { title, mesh, field, transfer, widget, light, camera, image, method } = document;
+    let Document { title, mesh, field, transfer, widget, light, emphasis, camera, image, method } = document;
     if let Some(split) = &mesh.split
         && ![5, 6].contains(split.get_ref())
     {
@@ -151,6 +154,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
         range: source.range(&transfer)?,
         transfer: source.transfer(&transfer, &widget, beside)?,
         light: light.map(|light| source.light(&light)).transpose()?,
+        emphasis: emphasis.map(|emphasis| source.emphasis(&emphasis)).transpose()?,
         unit_distance,
         cameras: camera.into_iter().map(|c| source.camera(c)).collect::<Result<_, _>>()?,
         size,

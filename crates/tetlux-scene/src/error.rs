@@ -74,6 +74,9 @@ pub enum SceneError {
         /// Why.
         reason: String,
     },
+    /// Impossible numbers of an emphasis.
+    #[error(transparent)]
+    Emphasis(#[from] tetlux_optics::EmphasisError),
     /// A combination that cannot be.
     #[error("{0}")]
     Method(String),

@@ -8,9 +8,9 @@ use tetlux_mesh::{Component, Location, ScalarField, TetMesh};
 use tetlux_optics::preset::read_preset;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_optics::widget::BivariateFunction;
-use tetlux_optics::{Classification, ImageFunction, Light};
+use tetlux_optics::{Classification, Emphasis, ImageFunction, Light};
 
-use crate::{Camera, Lighting, Method, Projection, Scene, SceneError, document};
+use crate::{Camera, Emphasized, Lighting, Method, Projection, Scene, SceneError, document};
 
 /// A scene without its mesh: plain values, which command-line flags may override.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +38,8 @@ pub struct SceneFile {
     pub range: NodeRange,
     /// Light by the gradient of the field.
     pub light: Option<Light>,
+    /// Opacity emphasised at the vertices by the field's derivatives.
+    pub emphasis: Option<Emphasis>,
     /// World length over which an opacity of 1 is an optical depth of 1.
     pub unit_distance: UnitDistance,
     /// Cameras; none: one is framed automatically.
@@ -167,8 +169,23 @@ impl SceneFile {
             (None, Some(gradients)) if bivariate => Some(gradient_magnitude(&scalar, gradients)),
             (None, _) => None,
         };
+        let classification = self.classification(scalar.range, second.as_ref().map(|second| second.range))?;
+        let emphasis = match (&self.emphasis, &classification) {
+            (None, _) => None,
+            (Some(emphasis), Classification::OneField(transfer)) => {
+                Some(Emphasized::new(emphasis, transfer, mesh, &scalar)?)
+            }
+            (Some(_), _) => {
+                return Err(self.missing(
+                    "[emphasis] goes with a transfer function of one field: two fields, widgets and images have the \
+                     gradient as their second axis instead"
+                        .into(),
+                ));
+            }
+        };
         Ok(Scene {
-            classification: self.classification(scalar.range, second.as_ref().map(|second| second.range))?,
+            classification,
+            emphasis,
             lighting: self.light.zip(gradients).map(|(light, gradients)| Lighting { light, gradients }),
             unit_distance: match self.unit_distance {
                 UnitDistance::MeanEdge => mesh.mean_edge_length(),

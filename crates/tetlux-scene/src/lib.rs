@@ -20,6 +20,7 @@
 
 mod camera;
 mod document;
+mod emphasis;
 mod error;
 mod file;
 mod frequency;
@@ -32,6 +33,7 @@ mod reason;
 mod view;
 
 pub use camera::{Camera, Projection};
+pub use emphasis::Emphasized;
 pub use error::SceneError;
 pub use file::{CameraSpec, FieldSpec, NodeRange, SceneFile, TransferSource, UnitDistance, gradient_magnitude};
 pub use frequency::{FrequencyLimits, frequency_limits};
@@ -58,6 +60,8 @@ pub struct Scene {
     pub classification: tetlux_optics::Classification,
     /// Light by the gradient, and silhouettes.
     pub lighting: Option<Lighting>,
+    /// The scalar classified at the vertices, its opacity emphasised there.
+    pub emphasis: Option<Emphasized>,
     /// World length over which an opacity of 1 is an optical depth of 1: extinction = opacity / unit distance.
     pub unit_distance: f64,
     /// Where the eye is.

@@ -21,7 +21,9 @@ pub(crate) fn refusal(scene: &Scene) -> Option<String> {
         let why = "which carries one scalar over the triangles of the decomposition";
         return instead(format!("interpolation \"{}\"", method.interpolation), why, "use ray");
     }
-    if matches!(method.classification, Classification::Vertex | Classification::PostClip) {
+    if method.classification == Classification::PostClip
+        || (bivariate && method.classification == Classification::Vertex)
+    {
         let why = "which is for one field's transfer function alone";
         return instead(format!("classification \"{}\"", method.classification), why, "use post-exact");
     }

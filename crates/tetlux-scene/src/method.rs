@@ -432,7 +432,7 @@ impl Method {
         if !both && !self.integrator.is_for_two_fields() {
             return Some(format!("integrator \"{}\"", self.integrator));
         }
-        if !matches!(self.classification, Classification::Auto | Classification::PostExact) {
+        if self.classification == Classification::PostClip {
             return Some(format!("classification \"{}\"", self.classification));
         }
         if self.table_precision != TablePrecision::Auto {

@@ -1,5 +1,7 @@
 //! What is done for a scene, and what is not, and why: decided before anything runs.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::{ScalarField, TetMesh};
@@ -33,7 +35,7 @@ pub struct Device {
 pub struct Skips {
     /// A vertex has no finite value: nothing can be classified.
     pub no_data: usize,
-    /// Opacity is zero on the cell's whole scalar range.
+    /// Opacity is zero on the cell's whole scalar range; with an emphasis, at its four vertices.
     pub transparent: usize,
     /// Zero volume: no ray is inside for any length.
     pub flat: usize,
@@ -64,6 +66,9 @@ pub struct Plan {
     pub target: Target,
     /// The camera resolved.
     pub view: View,
+    /// Luminance (linear RGB) and opacity at every point, as seen by this view, where the scene has an emphasis: they are
+    /// linear in each cell, and nothing else is classified.
+    pub colors: Option<Arc<[[f64; 4]]>>,
     /// The cells to draw, in mesh order.
     pub cells: Vec<u32>,
     /// The cells that are not drawn.
@@ -83,27 +88,31 @@ impl Plan {
     pub fn new(scene: &Scene, mesh: &TetMesh, device: Option<&Device>) -> Result<Plan, SceneError> {
         let view = scene.camera.view(scene.size)?;
         let mut warnings = Vec::new();
-        if let Some(reason) = scene.method.refusal() {
+        let method = method_of(scene)?;
+        if let Some(reason) = method.refusal() {
             return Err(SceneError::Method(reason));
         }
         if let Some(reason) = look::refusal(scene) {
             return Err(SceneError::Method(reason));
         }
         let integrator = choose_integrator(scene)?;
-        let (backend, backend_reason) = choose_backend(&scene.method, device)?;
-        let projection = choose_projection(&scene.method, backend, device);
+        let (backend, backend_reason) = match method.classification {
+            Classification::Vertex if scene.lighting.is_some() => choose_cpu(&method)?,
+            _ => choose_backend(&method, device)?,
+        };
+        let projection = choose_projection(&method, backend, device);
         let (order, order_reason) = choose_order(scene, integrator, projection);
-        let (target, target_reason) = choose_target(scene.method.target, projection, device);
-        let (table_precision, fallback) = choose_table_precision(scene.method.table_precision, device);
-        let decided =
-            Method { backend, order, projection, integrator, table_precision, target, ..scene.method.decided() };
+        let (target, target_reason) = choose_target(method.target, projection, device);
+        let (table_precision, fallback) = choose_table_precision(method.table_precision, device);
+        let decided = Method { backend, order, projection, integrator, table_precision, target, ..method.decided() };
         let tables = integrator.uses_table();
         warnings.extend(fallback.filter(|_| tables));
         warnings.extend(doubts_of(order).map(String::from));
         if backend == Backend::Gpu && target != Target::Rgba32f {
             warnings.push(format!("target {target}: {}", of_target(target)));
         }
-        let (cells, skips) = visible_cells(scene, mesh, &view);
+        let colors = scene.emphasis.as_ref().map(|emphasis| emphasis.seen(mesh, &view));
+        let (cells, skips) = visible_cells(scene, mesh, &view, colors.as_deref());
         if skips.no_data > 0 {
             warnings.push(format!("{} cells have vertices without a finite value and are left out", skips.no_data));
         }
@@ -123,8 +132,11 @@ impl Plan {
         if tables {
             reasons.push(("table", says(table_precision, of_table_precision)));
         }
-        if backend == Backend::Gpu {
+        if backend == Backend::Gpu || decided.classification == Classification::Vertex {
             reasons.push(("classification", says(decided.classification, of_classification)));
+        }
+        reasons.extend(scene.emphasis.as_ref().map(|emphasis| ("emphasis", emphasis.emphasis().to_string())));
+        if backend == Backend::Gpu {
             reasons.push(("target", format!("{target}: {target_reason}")));
         }
         reasons.push(("gradients", of_gradients(scene).into()));
@@ -152,11 +164,33 @@ impl Plan {
             pieces,
             target,
             view,
+            colors,
             cells,
             skips,
             reasons,
             warnings,
         })
+    }
+}
+
+/// The method that a scene asks for: with an emphasis it is classified at the vertices.
+fn method_of(scene: &Scene) -> Result<Method, SceneError> {
+    if scene.emphasis.is_none() {
+        return Ok(scene.method);
+    }
+    if scene.classification.is_bivariate() {
+        return Err(SceneError::Method(
+            "an emphasis is for one field with a transfer function: leave one of them out".into(),
+        ));
+    }
+    match scene.method.classification {
+        Classification::Auto | Classification::Vertex => {
+            Ok(Method { classification: Classification::Vertex, ..scene.method })
+        }
+        other => Err(SceneError::Method(format!(
+            "an emphasis is made of derivatives at the vertices, and classification \"{other}\" looks between them: use vertex, \
+             or leave out [emphasis]"
+        ))),
     }
 }
 
@@ -230,12 +264,35 @@ fn is_sine_squared(widget: &Widget) -> bool {
 /// What gradients are computed for, or that they are not.
 fn of_gradients(scene: &Scene) -> &'static str {
     let of_scalar = |second: &ScalarField| second.name == gradient_name(&scene.scalar);
+    if scene.emphasis.is_some() {
+        return match scene.lighting {
+            Some(_) => {
+                "computed: the emphasis takes them and the second derivatives along them, and light takes them for normals"
+            }
+            None => "computed: the emphasis takes them and the second derivatives along them",
+        };
+    }
     match (scene.lighting.is_some(), scene.second.as_ref().is_some_and(of_scalar)) {
         (true, true) => "computed: their magnitude is the second scalar, and light takes them for normals",
         (true, false) => "computed: light takes them for normals",
         (false, true) => "computed: their magnitude is the second scalar",
         (false, false) => "skipped: nothing asks for them",
     }
+}
+
+/// The back end of light on what is classified at the vertices.
+fn choose_cpu(method: &Method) -> Result<(Backend, String), SceneError> {
+    const WHAT: &str = "light on what is classified at the vertices";
+    if method.backend == Backend::Gpu {
+        return Err(SceneError::Method(format!("{WHAT} is drawn by the CPU back end alone: use --backend cpu")));
+    }
+    if let Some(other) = method.gpu_only() {
+        return Err(SceneError::Method(format!(
+            "{WHAT} is drawn by the CPU back end alone, and {other} is a method of graphics adapters: leave that out"
+        )));
+    }
+    let why = if method.backend == Backend::Cpu { "as asked".into() } else { format!("{WHAT} needs it") };
+    Ok((Backend::Cpu, why))
 }
 
 fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, String), SceneError> {
@@ -357,12 +414,16 @@ enum Fate {
     Outside,
 }
 
-fn visible_cells(scene: &Scene, mesh: &TetMesh, view: &View) -> (Vec<u32>, Skips) {
+fn visible_cells(scene: &Scene, mesh: &TetMesh, view: &View, colors: Option<&[[f64; 4]]>) -> (Vec<u32>, Skips) {
     let offset = mesh.origin() - view.eye;
     let eye_space: Vec<DVec3> = mesh.points().par_iter().map(|p| view.rotate(p.as_dvec3() + offset)).collect();
     let frustum = view.frustum();
     let ranges = mesh.scalar_ranges(&scene.scalar);
     let second = scene.second.as_ref().map(|second| mesh.scalar_ranges(second));
+    let is_visible = |cell: &[u32; 4], range: &Rectangle| match colors {
+        Some(colors) => cell.iter().any(|&v| colors.get(v as usize).is_some_and(|color| color[3] > 0.0)),
+        None => scene.classification.is_visible_over(range),
+    };
     let fates: Vec<Fate> = mesh
         .cells()
         .par_iter()
@@ -372,7 +433,7 @@ fn visible_cells(scene: &Scene, mesh: &TetMesh, view: &View) -> (Vec<u32>, Skips
             let range = Rectangle { s: ranges[index], g: second.as_ref().map_or([0.0; 2], |second| second[index]) };
             if range.s[0].is_nan() || range.g[0].is_nan() {
                 Fate::NoData
-            } else if !scene.classification.is_visible_over(&range) {
+            } else if !is_visible(cell, &range) {
                 Fate::Transparent
             } else if frustum.iter().any(|&(n, c)| p.iter().all(|&q| n.dot(q) + c < 0.0)) {
                 Fate::Outside
@@ -437,6 +498,7 @@ mod tests {
                 .unwrap(),
             ),
             lighting: None,
+            emphasis: None,
             unit_distance: 1.0,
             camera: Camera {
                 position: DVec3::new(4.5, -3.0, 0.5),

@@ -4,7 +4,8 @@ use tetlux_optics::published_f32::linear_published;
 use tetlux_optics::segment_f32::{mean_depth, opacity, weights_average, weights_direct};
 use tetlux_optics::symmetric_f32::weights_symmetric;
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
-use tetlux_shaders::{DEFAULTS, compose};
+use tetlux_optics::vertex_f32;
+use tetlux_shaders::{DEFAULTS, choose, compose};
 use tetlux_tests::{Random, transfer};
 
 use crate::device::{Bound, run};
@@ -258,6 +259,51 @@ fn whole_segments() {
         }
     }
     println!("largest difference {worst:.1e} over {} segments", 20 * rows);
+}
+
+const VERTEX_TEST: &str = "
+@group(3) @binding(0) var<storage, read> inputs: array<u32>;
+@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = id.x;
+    if 9u * i >= arrayLength(&inputs) {
+        return;
+    }
+    var segment: Segment;
+    for (var k = 0u; k < 4u; k++) {
+        segment.front[k] = bitcast<f32>(inputs[9u * i + k]);
+        segment.back[k] = bitcast<f32>(inputs[9u * i + 4u + k]);
+    }
+    segment.length = bitcast<f32>(inputs[9u * i + 8u]);
+    let result = shade(vec2<u32>(0u), segment);
+    for (var k = 0u; k < 4u; k++) {
+        outputs[4u * i + k] = bitcast<u32>(result[k]);
+    }
+}
+";
+
+#[test]
+fn segments_classified_at_the_vertices() {
+    let axes = [("shading", "shading::vertex"), ("quantity", "quantity::color"), ("attributes", "attributes::given")];
+    let source = compose("shading::vertex", &choose(DEFAULTS, &axes)).unwrap() + VERTEX_TEST;
+    let (mut random, rows) = (Random::new(15), 100_000);
+    let inputs: Vec<f32> = (0..rows)
+        .flat_map(|_| {
+            let mut row = [0.0; 9].map(|_: f32| random.between(0.0, 1.0) as f32);
+            for k in [3, 7, 8] {
+                row[k] = [0.0, 10f64.powf(random.between(-8.0, 4.0)) as f32][random.below(16).min(1)];
+            }
+            row
+        })
+        .collect();
+    let outputs = run(&source, &[], &inputs, rows, 4);
+    for (row, found) in inputs.chunks_exact(9).zip(outputs.chunks_exact(4)) {
+        let [front, back] = [0, 4].map(|from| std::array::from_fn(|k| row[from + k]));
+        let twin = vertex_f32::shade(Weights::Direct, front, back, row[8]);
+        assert!((0..4).all(|k| agree(found[k], twin[k])), "{row:?}: {found:?} and {twin:?}");
+    }
 }
 
 #[test]

@@ -6,12 +6,12 @@ use crate::walk::Values;
 use tetlux_optics::{Classification, ColorNode, OpacityNode, TransferFunction};
 
 fn along(classification: &Classification, tolerance: f64, segments: &[Segment], extinction: f64) -> Gathered {
-    let definition = Definition::new(classification, None);
+    let definition = Definition::new(classification, None, false);
     Integrator::new(definition, tolerance).integrate(segments, extinction, Sight::default(), &mut Workspace::default())
 }
 
 fn one(scalar: f64) -> Values {
-    [scalar, 0.0, 0.0, 0.0, 0.0]
+    [scalar, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 }
 
 fn unit(s_0: f64, s_1: f64) -> Segment {

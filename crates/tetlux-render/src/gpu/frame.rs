@@ -107,6 +107,7 @@ impl<'a> Maker<'a> {
                 let usage = if binding == Binding::Look { wgpu::BufferUsages::UNIFORM } else { storage };
                 self.filled("look", &contents, usage)
             }
+            Binding::Attributes => self.filled("attributes of vertices", bytemuck::cast_slice(job.attributes), storage),
         }
     }
 }

@@ -34,7 +34,8 @@ pub(crate) enum Classified {
 impl LookVariant {
     pub(crate) fn new(look: &Look) -> LookVariant {
         let function = match (&look.function, &look.published) {
-            (Function::OneField(..), _) => Classified::OneField,
+            // What is classified at the vertices has no look here: the plan sees to it.
+            (Function::OneField(..) | Function::Vertex(_), _) => Classified::OneField,
             (Function::TwoFields(_), _) => Classified::TwoFields,
             (Function::Widgets(_), None) => Classified::Widgets,
             (Function::Widgets(_), Some(Published::Analytic { .. })) => Classified::Analytic,
@@ -128,7 +129,7 @@ impl LookUniform {
             (uniform.errors[1], uniform.slope, uniform.curvature) = (turning.error, turning.slope, turning.curvature);
         }
         match &look.function {
-            Function::OneField(..) | Function::Widgets(_) => {}
+            Function::OneField(..) | Function::Vertex(_) | Function::Widgets(_) => {}
             Function::TwoFields([color, _]) => uniform.color_pieces = color.len() as u32,
             Function::Image(image) => {
                 (uniform.scale, uniform.origin, uniform.size) = (image.scale, image.origin, image.size);
@@ -152,6 +153,7 @@ pub(super) fn largest(look: &Look) -> u64 {
     let points = look.further.iter().map(|field| field.values.len() as u64 * rows).max();
     let function = match &look.function {
         Function::OneField(pieces, _) => size_of_val(&pieces[..]),
+        Function::Vertex(_) => 0,
         Function::TwoFields(lists) => lists.iter().map(|pieces| size_of_val(&pieces[..])).sum(),
         Function::Widgets(widgets) => size_of_val(&widgets[..]),
         Function::Image(image) => size_of_val(&image.texels[..]),

@@ -14,6 +14,8 @@ pub(crate) struct Variant {
     pub(crate) cell_data: bool,
     /// What there is beyond one field's transfer function.
     pub(crate) look: Option<LookVariant>,
+    /// Luminance and extinction of the vertices are given.
+    pub(crate) given: bool,
     pub(crate) projection: CellProjection,
     pub(crate) interpolation: Interpolation,
     pub(crate) integrator: Integrator,
@@ -55,6 +57,7 @@ pub(crate) enum Binding {
     CellScalars = 4,
     Order = 5,
     EntryPieces = 6,
+    Attributes = 7,
     Seconds = 8,
     Gradients = 9,
     Look = 10,
@@ -79,6 +82,7 @@ impl Variant {
             orthographic: plan.view.orthographic,
             cell_data,
             look,
+            given: plan.colors.is_some(),
             projection: plan.projection,
             interpolation: plan.interpolation,
             integrator: plan.integrator,
@@ -134,6 +138,7 @@ impl Variant {
             CellProjection::Gator => "source::computed",
             _ => "source::stored",
         };
+        let attributes = if self.given { "attributes::given" } else { "attributes::classified" };
         let data = if self.cell_data { "data::cell" } else { "data::point" };
         let output = match self.target {
             Target::Rgba8 => "output::straight",
@@ -143,6 +148,7 @@ impl Variant {
         let choices = choose(
             DEFAULTS,
             &[
+                ("attributes", attributes),
                 ("data", data),
                 ("geometry", geometry),
                 ("interpolation", interpolation),
@@ -184,7 +190,7 @@ impl Variant {
     /// The buffers of bind group 0 that the shaders read, ascending.
     pub(crate) fn bindings(&self) -> Vec<Binding> {
         let mut bindings = vec![Binding::View];
-        if !self.integrator.is_pre_integrated() && self.look.is_none_or(|look| look.has_pieces()) {
+        if !self.integrator.is_pre_integrated() && !self.given && self.look.is_none_or(|look| look.has_pieces()) {
             bindings.push(Binding::Pieces);
         }
         bindings.extend([Binding::Points, Binding::Cells]);
@@ -198,6 +204,9 @@ impl Variant {
             bindings.push(Binding::EntryPieces);
         }
         bindings.extend(self.look.iter().flat_map(LookVariant::bindings));
+        if self.given {
+            bindings.push(Binding::Attributes);
+        }
         bindings
     }
 
@@ -259,17 +268,22 @@ mod tests {
                         if decided && !integrator.is_for_two_fields() && method.refusal().is_none() {
                             let target = Target::ALL[variants.len() % Target::ALL.len()];
                             let [orthographic, cell_data] = [1, 2].map(|bit| variants.len() & bit != 0);
-                            variants.push(Variant {
+                            let variant = Variant {
                                 group: false,
                                 orthographic,
                                 cell_data,
                                 look: None,
+                                given: false,
                                 projection,
                                 interpolation,
                                 integrator,
                                 classification,
                                 target,
-                            });
+                            };
+                            variants.push(variant);
+                            if classification == Classification::Vertex {
+                                variants.push(Variant { given: true, cell_data: false, ..variant });
+                            }
                         }
                     }
                 }
@@ -300,6 +314,7 @@ mod tests {
                         orthographic: false,
                         cell_data: looks.len() % 3 == 0,
                         look: Some(LookVariant { function, second_by_cell, lit }),
+                        given: false,
                         projection,
                         interpolation: Interpolation::Ray,
                         integrator,

@@ -29,6 +29,7 @@ fn scene(mesh: &TetMesh, classification: Classification, light: Option<Light>) -
     Scene {
         second: Some(mesh.scalar("g", Component::Magnitude).unwrap()),
         lighting: light.map(|light| Lighting { light, gradients: gradients() }),
+        emphasis: None,
         scalar: scalar.clone(),
         classification,
         unit_distance: 1.0,
@@ -49,7 +50,7 @@ fn look(mesh: &TetMesh, scene: &Scene) -> Result<Option<Look>, RenderError> {
     let device = DeviceMesh::new(mesh, &scene.scalar);
     let eye = EyeSpace::new(&scene.camera.view(scene.size).unwrap(), mesh, &device);
     let pieces = transfer_f32::pieces(&transfer(), scene.scalar.range, 1.0);
-    Look::new(scene, mesh.points().len(), &eye, (&pieces, Weights::Direct), 1.0, None, 1.0)
+    Look::new(scene, mesh.points().len(), &eye, (&pieces, Weights::Direct), None, 1.0, None, 1.0)
 }
 
 fn shiny() -> Light {
@@ -84,7 +85,8 @@ fn what_a_scene_lacks_is_an_error() {
 
 fn segment(gradients: [Vec3; 2], length: f32) -> Segment {
     let (front, back, pieces) = ([0.2, 0.0], [0.9, 0.0], [0, 2]);
-    Segment { front, back, gradients, length, view: [0.0, 0.0, -1.0], pieces }
+    let colors = [[0.0; 4]; 2];
+    Segment { front, back, colors, gradients, length, view: [0.0, 0.0, -1.0], pieces }
 }
 
 #[test]

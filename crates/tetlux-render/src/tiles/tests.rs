@@ -37,8 +37,19 @@ impl Drawing {
         let scalar = mesh.scalar("s", Component::Magnitude).unwrap();
         let (background, method) = ([0.0; 3], Method::default());
         let classification = Classification::OneField(transfer.clone());
-        let (second, lighting, unit_distance) = (None, None, 1.0);
-        let scene = Scene { scalar, second, classification, lighting, unit_distance, camera, size, background, method };
+        let (second, lighting, emphasis, unit_distance) = (None, None, None, 1.0);
+        let scene = Scene {
+            scalar,
+            second,
+            classification,
+            lighting,
+            emphasis,
+            unit_distance,
+            camera,
+            size,
+            background,
+            method,
+        };
         let view = scene.camera.view(size).unwrap();
         let device = DeviceMesh::new(&mesh, &scene.scalar);
         Drawing { mesh, transfer, scene, view, device }
@@ -51,6 +62,7 @@ impl Drawing {
             view: self.lens().view,
             eye: EyeSpace::new(&self.view, &self.mesh, &self.device),
             pieces: &self.pieces(),
+            attributes: &[],
             weights: Weights::Direct,
             look: None,
             order,
@@ -94,6 +106,7 @@ impl Drawing {
             second: None,
             classification: &self.scene.classification,
             lighting: None,
+            colors: None,
             unit_distance: self.scene.unit_distance,
             tolerance: 1e-8,
         });

@@ -330,12 +330,12 @@ fn shade_lanes(
         let place = lanes.place.map(|axis| axis[i]);
         let inside = Inside { place, middle: lanes.middle[i], extent: lanes.extent[i] };
         let first = [lanes.front[i], lanes.back[i]].map(|s| record.base + s);
-        let Ends { scalars: [front, back], gradients } =
+        let Ends { scalars: [front, back], colors: ends, gradients } =
             look.values(first, further.iter().map(|field| field.ends(&inside, orthographic)));
         let [x, y] = lanes.pixel.map(|axis| -axis[i] * light.pixel / lanes.stretch[i]);
         let view = [x, y, -1.0 / lanes.stretch[i]];
         let pieces = record.pieces.map(|piece| piece as usize);
-        let part = look.shade(&Segment { front, back, gradients, length: lanes.length[i], view, pieces });
+        let part = look.shade(&Segment { front, back, colors: ends, gradients, length: lanes.length[i], view, pieces });
         let left = 1.0 - colors[3][i];
         for channel in 0..4 {
             colors[channel][i] += left * part.color[channel];

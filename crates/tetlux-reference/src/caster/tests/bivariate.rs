@@ -34,6 +34,7 @@ impl Box2 {
             second: Some(&self.y),
             classification,
             lighting: None,
+            colors: None,
             unit_distance: 1.0,
             tolerance: DEFAULT_TOLERANCE,
         }
@@ -188,6 +189,22 @@ fn an_image_is_its_definition() {
     }
 }
 
+/// The integral of what the definitions say over z from 0 to 2: Simpson's rule, fine enough.
+fn simpson(f: &dyn Fn(f64) -> f64) -> f64 {
+    let n = 2000;
+    let value = |k: i32| {
+        f(2.0 * f64::from(k) / f64::from(n))
+            * if k == 0 || k == n {
+                1.0
+            } else if k % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            }
+    };
+    (0..=n).map(value).sum::<f64>() * 2.0 / f64::from(n) / 3.0
+}
+
 #[test]
 fn light_and_silhouettes_follow_the_gradient() {
     // Gradients interpolated from (0, 0, 1) at z = 0 to (1, 0, 1) at z = 2: tan of the angle to the view is z / 2.
@@ -198,21 +215,6 @@ fn light_and_silhouettes_follow_the_gradient() {
     let seen = |light: &Light| {
         let scene = Scene { lighting: Some((light, &gradients)), ..body.scene(&fog) };
         Caster::new(scene).unwrap().cast(&ray([0.3, 0.4, -1.0], [0.0, 0.0, 1.0]))
-    };
-    // Simpson's rule, fine enough, of what the definitions say.
-    let simpson = |f: &dyn Fn(f64) -> f64| {
-        let n = 2000;
-        let value = |k: i32| {
-            f(2.0 * f64::from(k) / f64::from(n))
-                * if k == 0 || k == n {
-                    1.0
-                } else if k % 2 == 1 {
-                    4.0
-                } else {
-                    2.0
-                }
-        };
-        (0..=n).map(value).sum::<f64>() * 2.0 / f64::from(n) / 3.0
     };
     let cosine = |z: f64| 1.0 / (1.0 + 0.25 * z * z).sqrt();
     // Diffuse 0.5, ambient 0.25, specular 0.5 with exponent 4, all at the eye.
@@ -263,4 +265,33 @@ fn a_second_scalar_of_the_cells_is_taken_by_cell() {
     let slab = |g, opacity| widget(Shape::Uniform, Some(Rectangle { s: [-1.0, 2.0], g }), opacity, [1.0; 3]);
     let seen = body.seen(&widgets(vec![slab([0.0, 0.5], 1.0), slab([2.0, 2.5], 2.0)]));
     assert_close(seen.alpha, -(-1.5_f64).exp_m1());
+}
+
+#[test]
+fn colours_at_the_points_are_linear_in_between() {
+    let body = box_with(|_| 0.0);
+    let fog = widgets(vec![widget(Shape::Uniform, None, 1.0, [1.0; 3])]);
+    // Luminance z / 2 and 1 - z / 2 of an opacity of z: depth z^2 / 2.
+    let colors: Vec<[f64; 4]> = (0..body.mesh.points().len())
+        .map(|i| body.mesh.world(i as u32).z)
+        .map(|z| [0.5 * z, 1.0 - 0.5 * z, 1.0, z])
+        .collect();
+    let scene = Scene { colors: Some(&colors), ..body.scene(&fog) };
+    let seen = Caster::new(scene).unwrap().cast(&ray([0.3, 0.4, -1.0], [0.0, 0.0, 1.0]));
+    assert_close(seen.alpha, -(-2.0_f64).exp_m1());
+    let red = simpson(&|z| 0.5 * z * z * (-0.5 * z * z).exp());
+    assert_close(seen.color[0], red);
+    assert_close(seen.color[1], seen.alpha - red);
+    assert_close(seen.color[2], seen.alpha);
+    // The classification says nothing more, and nothing is seen where nothing is given.
+    let clear = vec![[1.0, 1.0, 1.0, 0.0]; colors.len()];
+    let scene = Scene { colors: Some(&clear), ..body.scene(&fog) };
+    assert_eq!(Caster::new(scene).unwrap().cast(&ray([0.3, 0.4, -1.0], [0.0, 0.0, 1.0])).alpha, 0.0);
+    let refused = |colors: &[[f64; 4]]| {
+        Caster::new(Scene { colors: Some(colors), ..body.scene(&fog) }).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    assert!(refused(&colors[1..]).contains("colours for"));
+    let mut bad = colors.clone();
+    bad[3][1] = f64::NAN;
+    assert!(refused(&bad).contains("NaN"));
 }
