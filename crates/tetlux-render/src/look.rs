@@ -24,6 +24,7 @@ use tetlux_mesh::{Location, ScalarField};
 use tetlux_optics::Classification;
 use tetlux_optics::image_f32::{self, Image};
 use tetlux_optics::light_f32::{LightUniform, half_way, lit, normal, silhouette_factor};
+use tetlux_optics::lit_linear_f32::{Illuminated, one_field, two_fields};
 use tetlux_optics::segment_f32::weights_direct;
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
 use tetlux_optics::two_field_f32;
@@ -214,7 +215,27 @@ impl Look {
     pub(crate) fn shade(&self, segment: &Segment) -> Integrated {
         match &self.light {
             None => self.classify(segment, 0.0, 1.0, 1.0),
-            Some(light) => self.lit(light, segment),
+            Some(light) => match &self.function {
+                Function::OneField(pieces, weights) => {
+                    let lit = self.illuminated(light, segment);
+                    one_field(&lit, pieces, *weights, segment.front[0], segment.back[0])
+                }
+                Function::TwoFields([color, opacity]) => {
+                    two_fields(&self.illuminated(light, segment), color, opacity, segment.front, segment.back)
+                }
+                Function::Widgets(_) | Function::Image(_) => self.lit(light, segment),
+            },
+        }
+    }
+
+    /// Of functions that are linear between nodes colour is exact: light may err by all that is allowed.
+    fn illuminated(&self, light: &LightUniform, segment: &Segment) -> Illuminated {
+        Illuminated {
+            light: *light,
+            eye: segment.view,
+            gradients: segment.gradients.map(|g| g.to_array()),
+            length: segment.length,
+            error: self.errors[0] + self.errors[1],
         }
     }
 
