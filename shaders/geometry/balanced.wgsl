@@ -74,7 +74,7 @@ fn segment_in(fragment: Fragment) -> Segment {
         let c = corners(fragment.pieces_entry.w - 1u);
         let cell = project_cell(c.vertices, c.scalars, c.parity);
         let reference = cell_reference(c.vertices, c.scalars, cell.gradient.w);
-        return cell_segment(cell.planes, linear_in(cell, reference, c.vertices, c.scalars), reference, at);
+        return cell_segment(cell.planes, linear_in(cell, reference, c), reference, at);
     }
     var distance = NEVER;
     var scalar = 0.0;
@@ -88,6 +88,7 @@ fn segment_in(fragment: Fragment) -> Segment {
     if !(distance > 0.0 && distance < NEVER) {
         return segment;
     }
+    segment.at = at;
     let near = fragment.front.x;
     if ORTHOGRAPHIC {
         segment.length = distance;

@@ -82,7 +82,7 @@ fn segment_in(fragment: Fragment) -> Segment {
         let cell = projected_cell(i);
         let c = corners(i);
         let reference = cell_reference(c.vertices, c.scalars, cell.gradient.w);
-        return cell_segment(cell.planes, linear_in(cell, reference, c.vertices, c.scalars), reference, at);
+        return cell_segment(cell.planes, linear_in(cell, reference, c), reference, at);
     }
     return segment_between(fragment.front, fragment.back, fragment.ends, at);
 }

@@ -15,5 +15,5 @@ fn carried_ends(ends: vec2<f32>, at: vec2<f32>) -> vec2<f32> {
 }
 
 fn segment_between(front: Quantity, back: Quantity, ends: vec2<f32>, at: vec2<f32>) -> Segment {
-    return Segment(front, back, ends.x);
+    return Segment(front, back, at, ends.x);
 }

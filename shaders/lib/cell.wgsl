@@ -20,6 +20,18 @@ struct Cell {
     gradient: vec4<f32>,
 }
 
+// A cell of the mesh.
+struct Corners {
+    // In ascending order of their index in the mesh.
+    vertices: array<Vertex, 4>,
+    scalars: vec4<f32>,
+    // +1 if that order is positively oriented, else -1.
+    parity: f32,
+    // Its index in the mesh and those of its vertices.
+    cell: u32,
+    names: vec4<u32>,
+}
+
 // Kinds of a cell, as stored in gradient.w.
 const HIDDEN = 0.0;
 const PLAIN = 1.0;

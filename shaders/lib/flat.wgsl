@@ -1,8 +1,8 @@
 // What a fragment needs to find its own segment of a cell, the same at each of the cell's vertices: nothing is
 // interpolated, so nothing depends on how a rasteriser rounds vertices.
 import package::lib::view::{view};
-import package::lib::mesh::{Corners, entry_of};
-import package::lib::cell::{Cell, Reference, cell_reference};
+import package::lib::mesh::{entry_of};
+import package::lib::cell::{Cell, Corners, Reference, cell_reference};
 import package::lib::span::{Segment};
 import package::lib::ray::{cell_segment};
 import package::axes::quantity::{RayFragment, linear_in, linear_of, with_linear};
@@ -20,7 +20,7 @@ fn nowhere() -> FlatFragment {
 // The vertex at a place in pixels from the picture's middle, for the i-th cell of the batch.
 fn flat_fragment(at: vec2<f32>, i: u32, cell: Cell, c: Corners, face: u32) -> FlatFragment {
     let reference = cell_reference(c.vertices, c.scalars, cell.gradient.w);
-    let linear = linear_in(cell, reference, c.vertices, c.scalars);
+    let linear = linear_in(cell, reference, c);
     var fragment: FlatFragment;
     fragment.position = vec4<f32>(at.x * 2.0 / view.size.x, -at.y * 2.0 / view.size.y, 0.5, 1.0);
     fragment.plane_0 = cell.planes[0];

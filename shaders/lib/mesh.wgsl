@@ -1,5 +1,6 @@
 // The cells of one draw call.
-import package::lib::view::{Vertex, vertex};
+import package::lib::view::{vertex};
+import package::lib::cell::{Corners};
 import package::lib::mesh_buffers::{points, cells};
 import package::axes::data::{scalars_of};
 
@@ -14,12 +15,6 @@ struct Batch {
 }
 
 @group(1) @binding(0) var<uniform> batch: Batch;
-
-struct Corners {
-    vertices: array<Vertex, 4>,
-    scalars: vec4<f32>,
-    parity: f32,
-}
 
 // The place in the order of the i-th cell of the batch.
 fn entry_of(i: u32) -> u32 {
@@ -37,5 +32,7 @@ fn corners(i: u32) -> Corners {
         corners.vertices[k] = vertex(points[names[k]].xyz);
     }
     corners.scalars = scalars_of(index, names);
+    corners.cell = index;
+    corners.names = names;
     return corners;
 }

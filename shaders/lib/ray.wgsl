@@ -46,6 +46,7 @@ fn cell_segment(planes: array<vec4<f32>, 4>, linear: Linear, reference: Referenc
     if !(front > back) {
         return segment;
     }
+    segment.at = at;
     let across = (at - reference.origins.xy) * view.pixel;
     if ORTHOGRAPHIC {
         let direction = vec3<f32>(0.0, 0.0, 1.0);

@@ -7,8 +7,7 @@
 // (classes 1a and 1b), or two opposite edges (class 2). An A_i of zero joins the larger simplex: a vertex over an edge, or
 // over a vertex, is class 1 with triangles of no area. The triangles are a fan around the thick vertex.
 import package::lib::view::{Vertex, view, ORTHOGRAPHIC};
-import package::lib::mesh::{Corners};
-import package::lib::cell::{Cell, DEEP, cell_kind, project_cell};
+import package::lib::cell::{Cell, Corners, DEEP, cell_kind, project_cell};
 import package::lib::silhouette::{cross2};
 import package::axes::quantity::{Quantity, quantity_of, packed};
 import package::axes::shading::{pieces_between};

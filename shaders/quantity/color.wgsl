@@ -1,8 +1,8 @@
 // What is linear in a cell: luminance and, in w, extinction, classified at its vertices. Whatever the transfer function
 // does between the vertices' scalars is lost: the artifact that classification after interpolation avoids.
-import package::lib::view::{Vertex};
-import package::lib::cell::{Cell, Reference, DEEP, STEEPEST, farthest_vertex};
+import package::lib::cell::{Cell, Corners, Reference, DEEP, STEEPEST, farthest_vertex};
 import package::lib::transfer::{piece_at, classify};
+import package::axes::data::{CELLWISE, scalar_of};
 
 alias Quantity = vec4<f32>;
 
@@ -11,6 +11,19 @@ alias Linear = array<vec4<f32>, 4>;
 
 fn quantity_of(scalar: f32) -> Quantity {
     return classify(piece_at(scalar), scalar);
+}
+
+// At one of a cell's vertices.
+fn quantity_at(cell: u32, name: u32) -> Quantity {
+    return quantity_of(scalar_of(cell, name));
+}
+
+// What a value carried over from the cell before is in this one.
+fn in_cell(value: Quantity, cell: u32) -> Quantity {
+    if CELLWISE {
+        return quantity_of(scalar_of(cell, 0u));
+    }
+    return value;
 }
 
 // As it is stored, and back.
@@ -22,7 +35,9 @@ fn unpacked(stored: vec4<f32>) -> Quantity {
     return stored;
 }
 
-fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>) -> Linear {
+fn linear_in(cell: Cell, reference: Reference, corners: Corners) -> Linear {
+    let v = corners.vertices;
+    let s = corners.scalars;
     let c = array<vec4<f32>, 4>(quantity_of(s.x), quantity_of(s.y), quantity_of(s.z), quantity_of(s.w));
     let e1 = v[1].frame - v[0].frame;
     let e2 = v[2].frame - v[0].frame;

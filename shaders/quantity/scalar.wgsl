@@ -1,6 +1,6 @@
 // What is linear in a cell: the scalar. It is classified after it has been interpolated.
-import package::lib::view::{Vertex};
-import package::lib::cell::{Cell, Reference};
+import package::lib::cell::{Cell, Corners, Reference};
+import package::axes::data::{CELLWISE, scalar_of};
 
 alias Quantity = f32;
 
@@ -9,6 +9,19 @@ alias Linear = array<vec4<f32>, 4>;
 
 fn quantity_of(scalar: f32) -> Quantity {
     return scalar;
+}
+
+// At one of a cell's vertices.
+fn quantity_at(cell: u32, name: u32) -> Quantity {
+    return scalar_of(cell, name);
+}
+
+// What a value carried over from the cell before is in this one.
+fn in_cell(value: Quantity, cell: u32) -> Quantity {
+    if CELLWISE {
+        return scalar_of(cell, 0u);
+    }
+    return value;
 }
 
 // As it is stored, and back.
@@ -20,7 +33,7 @@ fn unpacked(stored: vec4<f32>) -> Quantity {
     return stored.x;
 }
 
-fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>) -> Linear {
+fn linear_in(cell: Cell, reference: Reference, c: Corners) -> Linear {
     return Linear(
         vec4<f32>(cell.gradient.xyz, reference.scalar),
         vec4<f32>(reference.s, 0.0, 0.0),

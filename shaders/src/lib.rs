@@ -27,13 +27,20 @@ macro_rules! modules {
 
 /// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
 pub const MODULES: &[(&str, &str)] = modules! {
-    lib { balanced cell flat lookup mesh mesh_buffers plane published ray segment silhouette span symmetric thick transfer view volume walk }
+    lib {
+        balanced cell erf flat further gradients image integrated light lit look lookup mesh mesh_buffers one_field plane
+        published ray segment silhouette span spent symmetric thick transfer two_fields view volume walk widget
+        widget_tables widgets
+    }
     data { cell point }
+    function { analytic approximate image one_field two_fields widgets }
     geometry { balanced ray thick vicp }
     interpolation { perspective screen_linear }
     output { dither plain straight }
-    quantity { color scalar }
-    shading { post_clip post_exact preint preint_log preint_q vertex }
+    quantity { color lit pair scalar }
+    sample { image widgets }
+    second { cell none point }
+    shading { lit post_clip post_exact preint preint_log preint_q two_scalars vertex }
     source { computed stored }
     weights { average direct linear psi q symmetric }
     stages { balance decompose draw group march project }
@@ -45,10 +52,13 @@ pub type Choice = (&'static str, &'static str);
 /// The module of every axis that a scene takes unless told otherwise.
 pub const DEFAULTS: &[Choice] = &[
     ("data", "data::point"),
+    ("function", "function::one_field"),
     ("geometry", "geometry::ray"),
     ("interpolation", "interpolation::perspective"),
     ("output", "output::plain"),
     ("quantity", "quantity::scalar"),
+    ("sample", "sample::widgets"),
+    ("second", "second::none"),
     ("shading", "shading::post_exact"),
     ("source", "source::stored"),
     ("weights", "weights::direct"),
@@ -239,6 +249,20 @@ mod tests {
                 &[("geometry", "geometry::thick")]
             }
             "quantity::color" => &[("shading", "shading::vertex")],
+            "shading::two_scalars" | "quantity::pair" | "second::cell" | "second::point" => &[
+                ("function", "function::two_fields"),
+                ("quantity", "quantity::pair"),
+                ("shading", "shading::two_scalars"),
+            ],
+            "shading::lit" | "quantity::lit" => &[("quantity", "quantity::lit"), ("shading", "shading::lit")],
+            "function::analytic" | "function::approximate" | "sample::image" | "sample::widgets" => &[
+                ("function", "function::approximate"),
+                ("quantity", "quantity::pair"),
+                ("shading", "shading::two_scalars"),
+            ],
+            "function::image" | "function::one_field" | "function::two_fields" | "function::widgets" => {
+                &[("quantity", "quantity::lit"), ("shading", "shading::lit")]
+            }
             _ => &[],
         };
         choose(&choose(DEFAULTS, others), &[(axis, name)])

@@ -50,7 +50,7 @@ fn hit_behind(last: Hit, at: vec2<f32>) -> Hit {
 fn color_of(i: u32, at: vec2<f32>) -> vec4<f32> {
     let c = corners(i);
     let reference = cell_reference(c.vertices, c.scalars, projected[i].gradient.w);
-    let linear = linear_in(projected[i], reference, c.vertices, c.scalars);
+    let linear = linear_in(projected[i], reference, c);
     let segment = cell_segment(projected[i].planes, linear, reference, at);
     return shade(pieces_between(reference.s.x, reference.s.y, entry_of(i)), segment);
 }

@@ -7,8 +7,7 @@ import package::lib::view::{view, vertex};
 import package::lib::mesh_buffers::{points, cells};
 import package::lib::span::{Segment};
 import package::lib::walk::{Ray, Corner, ray_through, offset_from, turns, area, place_of};
-import package::axes::data::{CELLWISE, scalar_of};
-import package::axes::quantity::{Quantity, quantity_of};
+import package::axes::quantity::{quantity_at, in_cell};
 import package::axes::shading::{pieces_between, shade};
 
 struct March {
@@ -32,7 +31,7 @@ const NONE = 0xffffffffu;
 
 fn corner_of(ray: Ray, cell: u32, name: u32) -> Corner {
     let frame = vertex(points[name].xyz).frame;
-    return Corner(name, offset_from(ray, frame), frame.z, quantity_of(scalar_of(cell, name)));
+    return Corner(name, offset_from(ray, frame), frame.z, quantity_at(cell, name));
 }
 
 // The triangle through which the ray leaves the cell between the triangle abc, through which it came in, and an apex: the
@@ -113,12 +112,9 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
                 let begin = clamp((near - front.depth) / (back.depth - front.depth), 0.0, 1.0);
                 var segment: Segment;
                 segment.length = (back.depth - max(front.depth, near)) * stretch;
-                segment.front = mix(front.value, back.value, begin);
-                segment.back = back.value;
-                if CELLWISE {
-                    segment.front = apex.value;
-                    segment.back = apex.value;
-                }
+                segment.at = at;
+                segment.front = in_cell(front.value + begin * (back.value - front.value), cell);
+                segment.back = in_cell(back.value, cell);
                 if segment.length > 0.0 {
                     color += (1.0 - color.a) * shade(range, segment);
                 }

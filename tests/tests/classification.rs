@@ -207,15 +207,18 @@ fn an_image_spans_the_fields_and_has_its_top_row_at_the_upper_end() {
 }
 
 #[test]
-fn the_cpu_draws_two_fields_and_light_and_the_plan_says_what_gradients_are_for() {
+fn both_back_ends_draw_two_fields_and_light_and_the_plan_says_what_gradients_are_for() {
     let mesh = mesh();
     let says = |text: &str| Plan::new(&scene(text), &mesh, None).unwrap().to_string();
     let one = says(&format!("[transfer]\n{NODES}"));
     assert!(one.contains("skipped: nothing asks for them"), "{one}");
     let widgets = says(&format!("[transfer]\n{GAUSSIAN}"));
-    assert!(widgets.contains("two fields needs it") && widgets.contains("magnitude is the second scalar"), "{widgets}");
+    assert!(widgets.contains("cpu: ") && widgets.contains("magnitude is the second scalar"), "{widgets}");
     let lit = says(&format!("[transfer]\n{NODES}[light]\n"));
-    assert!(lit.contains("light needs it") && lit.contains("for normals"), "{lit}");
-    let refused = Plan::new(&scene(&format!("[transfer]\n{GAUSSIAN}[method]\nbackend = \"gpu\"\n")), &mesh, None);
-    assert!(refused.unwrap_err().to_string().contains("--backend cpu"));
+    assert!(lit.contains("for normals"), "{lit}");
+    let hardware = tetlux_scene::Device { name: "adapter".into(), software: false, blends_f32: true, norm16: false };
+    for text in [format!("[transfer]\n{GAUSSIAN}"), format!("[transfer]\n{NODES}[light]\n")] {
+        let plan = Plan::new(&scene(&text), &mesh, Some(&hardware)).unwrap();
+        assert_eq!(plan.backend, tetlux_scene::Backend::Gpu, "{plan}");
+    }
 }

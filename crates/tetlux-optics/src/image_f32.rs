@@ -51,7 +51,7 @@ pub fn image(function: &ImageFunction, ranges: [[f64; 2]; 2], extinction: f64) -
 }
 
 /// The four texels of the cell of the grid that holds a place: (0, 0), (1, 0), (0, 1), (1, 1).
-fn corners(image: &Image, cell: [u32; 2]) -> [[f32; 4]; 4] {
+fn texels_around(image: &Image, cell: [u32; 2]) -> [[f32; 4]; 4] {
     let right = (cell[0] + 1).min(image.size[0] - 1);
     let up = (cell[1] + 1).min(image.size[1] - 1);
     [[cell[0], cell[1]], [right, cell[1]], [cell[0], up], [right, up]]
@@ -59,7 +59,7 @@ fn corners(image: &Image, cell: [u32; 2]) -> [[f32; 4]; 4] {
 }
 
 /// Bilinear in a cell; x and y are clamped to it.
-fn mix(corners: &[[f32; 4]; 4], x: f32, y: f32) -> [f32; 4] {
+fn bilinear(corners: &[[f32; 4]; 4], x: f32, y: f32) -> [f32; 4] {
     let s = x.clamp(0.0, 1.0);
     let t = y.clamp(0.0, 1.0);
     [0, 1, 2, 3].map(|k| {
@@ -80,7 +80,7 @@ pub fn classify(image: &Image, point: [f32; 2]) -> [f32; 4] {
     let x = point[0] * image.scale[0] + image.origin[0];
     let y = point[1] * image.scale[1] + image.origin[1];
     let cell = [cell_of(x, image.size[0] - 1), cell_of(y, image.size[1] - 1)];
-    mix(&corners(image, cell), x - cell[0] as f32, y - cell[1] as f32)
+    bilinear(&texels_around(image, cell), x - cell[0] as f32, y - cell[1] as f32)
 }
 
 /// The next u beyond `u` at which a place that runs from `from` by `step` crosses a line of the grid; 2 if none.
@@ -132,7 +132,7 @@ pub fn integrate_counted(image: &Image, front: [f32; 2], back: [f32; 2], length:
         // By the middle: an end may lie on a line.
         let middle = 0.5 * (u + end);
         let cell = [cell_of(from[0] + step[0] * middle, last[0]), cell_of(from[1] + step[1] * middle, last[1])];
-        let c = corners(image, cell);
+        let c = texels_around(image, cell);
         let thickest = c[0][3].max(c[1][3].max(c[2][3].max(c[3][3])));
         if thickest > 0.0 {
             let width = end - u;
@@ -156,7 +156,7 @@ pub fn integrate_counted(image: &Image, front: [f32; 2], back: [f32; 2], length:
 fn piece(c: &[[f32; 4]; 4], from: [f32; 2], step: [f32; 2], u0: f32, width: f32, length: f32, result: &mut [f32; 4]) {
     let at = |share: f32| {
         let u = u0 + width * share;
-        mix(c, from[0] + step[0] * u, from[1] + step[1] * u)
+        bilinear(c, from[0] + step[0] * u, from[1] + step[1] * u)
     };
     let nodes = [at(0.11270167), at(0.5), at(0.8872983)];
     let weights = [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0];

@@ -239,13 +239,7 @@ fn smooth(
 }
 
 /// A segment of one field, lit: see [`crate::transfer_f32::integrate`].
-pub fn one_field(
-    segment: &Illuminated,
-    pieces: &[Piece],
-    model: Weights,
-    s_front: f32,
-    s_back: f32,
-) -> Integrated {
+pub fn one_field(segment: &Illuminated, pieces: &[Piece], model: Weights, s_front: f32, s_back: f32) -> Integrated {
     let vectors = vectors(segment);
     let mut result = Integrated::default();
     let rise = s_back - s_front;

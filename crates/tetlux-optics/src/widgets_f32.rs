@@ -91,7 +91,7 @@ pub fn optical_depth(widgets: &[Widget], front: [f32; 2], back: [f32; 2], length
 }
 
 /// The number of equal pieces, cut at kinks besides, at which the error of every channel is at most `bound`.
-fn pieces(sum: &Summary, spread: f32, alpha: f32, bound: f32) -> u32 {
+fn piece_count(sum: &Summary, spread: f32, alpha: f32, bound: f32) -> u32 {
     let third = alpha * spread * sum.curvature / 96.0;
     let fourth = spread * sum.slope * (sum.slope * sum.rate / 240.0 + sum.curvature / 384.0);
     let fifth = 0.0053091 * spread * sum.slope * sum.slope * sum.slope;
@@ -223,7 +223,7 @@ fn integrate_summed(
         let few = sum.kinks <= MAX_PIECES as f32;
         let mut step = 1.0;
         if matters {
-            let count = if few { pieces(sum, spread, alpha, bound) } else { MAX_PIECES };
+            let count = if few { piece_count(sum, spread, alpha, bound) } else { MAX_PIECES };
             step = 1.0 / count as f32;
         }
         let cut = composite(widgets, front, back, length, step, matters && few);

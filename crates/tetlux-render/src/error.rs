@@ -6,9 +6,6 @@ use tetlux_shaders::ComposeError;
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// The plan wants light or classification by two fields of a graphics adapter.
-    #[error("classification by two fields, and light, are drawn by the CPU back end alone: use --backend cpu")]
-    CpuOnly,
     /// The scene lacks what its classification or its light needs.
     #[error("the scene needs {0}, and has none: make it with SceneFile::scene on this mesh")]
     Missing(&'static str),

@@ -1,9 +1,11 @@
 //! The wgpu back end: cells projected in a compute stage, drawn back to front, blended by the fixed-function hardware.
 
 pub(crate) mod frame;
+pub(crate) mod look;
 pub(crate) mod march;
 mod picture;
 pub(crate) mod pipelines;
+mod spent;
 mod stretch;
 pub(crate) mod tables;
 pub(crate) mod variant;
@@ -13,9 +15,11 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use tetlux_scene::{Device, Plan};
 
+use crate::look::Spent;
 use crate::march::March;
 use crate::stage::Stages;
 use crate::{Job, RenderError, Resources};
+use look::LookVariant;
 use march::Marcher;
 use pipelines::Pipelines;
 pub(crate) use stretch::LARGEST_GROUP;
@@ -39,6 +43,15 @@ type Made<T> = Mutex<HashMap<Variant, Arc<T>>>;
 struct Open {
     device: wgpu::Device,
     queue: wgpu::Queue,
+}
+
+/// What a picture came to.
+pub(crate) struct Drawn {
+    /// Premultiplied, top row first.
+    pub(crate) pixels: Vec<[f32; 4]>,
+    pub(crate) resources: Resources,
+    /// Pieces of segments, where there are two fields or light.
+    pub(crate) spent: Option<Spent>,
 }
 
 /// What is used where the adapter has it, beyond what every device can do.
@@ -85,13 +98,8 @@ impl Gpu {
         &self.driver
     }
 
-    /// Draws a picture: premultiplied pixels, top row first.
-    pub(crate) fn draw(
-        &self,
-        plan: &Plan,
-        job: &Job,
-        stages: &mut Stages,
-    ) -> Result<(Vec<[f32; 4]>, Resources), RenderError> {
+    /// Draws a picture.
+    pub(crate) fn draw(&self, plan: &Plan, job: &Job, stages: &mut Stages) -> Result<Drawn, RenderError> {
         let open = match self.open.get() {
             Some(open) => open,
             None => {
@@ -99,7 +107,7 @@ impl Gpu {
                 self.open.get_or_init(|| open)
             }
         };
-        let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty());
+        let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty(), job.look.as_ref().map(LookVariant::new));
         self.check_limits(open, job)?;
         let pipelines = |variant, stages: &mut Stages| {
             made(&self.pipelines, variant, stages, || self.checked(open, || Pipelines::new(&open.device, variant)))
@@ -156,6 +164,7 @@ impl Gpu {
             ("the mesh's points", size_of_val(&job.mesh.points[..]) as u64, "bytes", binding),
             ("the mesh's cells", size_of_val(&job.mesh.cells[..]) as u64, "bytes", binding),
             ("the transfer function", size_of_val(job.pieces) as u64, "bytes", binding),
+            ("the gradients or the image", job.look.as_ref().map_or(0, look::largest), "bytes", binding),
             ("the order of the cells", size_of_val(job.order) as u64, "bytes", binding),
             ("the faces through which rays come in", job.march.as_ref().map_or(0, March::largest), "bytes", binding),
             ("the picture", u64::from(job.size[0].max(job.size[1])), "pixels a side", side),

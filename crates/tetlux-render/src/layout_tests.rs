@@ -3,9 +3,11 @@
 use std::mem::{offset_of, size_of};
 
 use naga::TypeInner;
+use tetlux_optics::widget_f32::Widget;
 
 use crate::device_view::DeviceView;
 use crate::gpu::frame::Batch;
+use crate::gpu::look::LookUniform;
 use crate::gpu::march::Limits;
 use crate::gpu::tables::Lookup;
 use crate::gpu::variant::{BALANCED_BYTES, CELL_BYTES};
@@ -65,6 +67,38 @@ fn the_decoding_of_tables() {
         ("length", offset_of!(Lookup, length)),
     ]);
     assert_eq!(layout_in("lib::lookup", "Lookup"), (ours, size_of::<Lookup>()));
+}
+
+#[test]
+fn the_look() {
+    let ours = named([
+        ("shares", offset_of!(LookUniform, shares)),
+        ("direction", offset_of!(LookUniform, direction)),
+        ("silhouette", offset_of!(LookUniform, silhouette)),
+        ("errors", offset_of!(LookUniform, errors)),
+        ("slope", offset_of!(LookUniform, slope)),
+        ("curvature", offset_of!(LookUniform, curvature)),
+        ("scale", offset_of!(LookUniform, scale)),
+        ("origin", offset_of!(LookUniform, origin)),
+        ("size", offset_of!(LookUniform, size)),
+        ("color_pieces", offset_of!(LookUniform, color_pieces)),
+        ("pieces", offset_of!(LookUniform, pieces)),
+        ("emission", offset_of!(LookUniform, emission)),
+        ("unit", offset_of!(LookUniform, unit)),
+        ("unused", offset_of!(LookUniform, unused)),
+    ]);
+    assert_eq!(layout_in("lib::look", "Look"), (ours, size_of::<LookUniform>()));
+}
+
+#[test]
+fn a_widget() {
+    let ours = named([
+        ("color", offset_of!(Widget, color)),
+        ("support", offset_of!(Widget, support)),
+        ("shape", offset_of!(Widget, shape)),
+        ("kind", offset_of!(Widget, kind)),
+    ]);
+    assert_eq!(layout_in("lib::widget", "Widget"), (ours, size_of::<Widget>()));
 }
 
 #[test]

@@ -73,6 +73,7 @@ use tetlux_tables::{Table, TableKind, TableSpec};
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
+use crate::gpu::Drawn;
 use crate::lens::Lens;
 use crate::look::Look;
 use crate::march::March;
@@ -221,9 +222,6 @@ impl Renderer {
         let [low, high] = mesh.local_bounds();
         let across = low.distance(high) * device_mesh.scale;
         let look = Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), extinction, published, across)?;
-        if plan.backend == Backend::Gpu && look.is_some() {
-            return Err(RenderError::CpuOnly);
-        }
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
             .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
@@ -246,13 +244,12 @@ impl Renderer {
             opaque,
             size: view.size,
         };
-        let mut spent = None;
-        let (pixels, resources) = match plan.backend {
+        let Drawn { pixels, resources, spent } = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
                 let (pixels, pieces) = tiles::draw(&job, &mut stages);
-                spent = job.look.is_some().then_some(pieces);
-                (pixels, Resources { cells: cells.len(), ..Resources::default() })
+                let resources = Resources { cells: cells.len(), ..Resources::default() };
+                Drawn { pixels, resources, spent: job.look.is_some().then_some(pieces) }
             }
         };
         let warnings = order::doubts(&order, plan);

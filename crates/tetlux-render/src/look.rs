@@ -2,19 +2,9 @@
 //!
 //! A segment is shaded from the values at its two ends, between which they are linear: [`Look::shade`].
 //!
-//! # Error
-//!
-//! A ray's segments have opacities a_i and see through T_i of what is before them, and the sum of a_i T_i is the ray's
-//! opacity, at most 1. A segment's light that errs by at most e a_i therefore lets the pixel err by at most e, however
-//! many segments there are: each is given that share of its own opacity.
-//!
-//! Light is constant on pieces over which the normal turns by the same angle: it is that of the point at which even
-//! extinction would absorb on average. With the slope V and the curvature W of the lit luminance over the normal's
-//! angle, and a turn of t in n pieces, a piece errs by at most V t / n times its opacity, whatever is in it. Where
-//! opacity and colour vary by no more than themselves over the segment, what varies evenly about that point cancels,
-//! and V t / (12 n^2) + W t^2 / (24 n^2) is left; where they end within a piece, that piece alone (a_i / n of the opacity)
-//! errs by V t / (2 n). [`Look::turns`] takes n for V t / (4 n^2) + W t^2 / (16 n^2). Peaks that are narrower than a piece
-//! are not covered by that: the error is then the larger for its part, and what is measured has to say.
+//! Every segment may err by a share of its own opacity: those of a ray, as far as they are seen, add up to 1 at most, so that
+//! the pixel errs by no more than that share, however many segments there are. How light keeps to it is told in
+//! [`tetlux_optics::lit_f32`].
 
 #[cfg(test)]
 mod tests;
@@ -23,9 +13,9 @@ use glam::{DVec3, Vec3};
 use tetlux_mesh::{Location, ScalarField};
 use tetlux_optics::Classification;
 use tetlux_optics::image_f32::{self, Image};
-use tetlux_optics::light_f32::{LightUniform, half_way, lit, normal, silhouette_factor};
+use tetlux_optics::light_f32::LightUniform;
+use tetlux_optics::lit_f32::{Turning, integrate_lit};
 use tetlux_optics::lit_linear_f32::{Illuminated, one_field, two_fields};
-use tetlux_optics::segment_f32::weights_direct;
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
 use tetlux_optics::two_field_f32;
 use tetlux_optics::widget_f32::{self, Widget};
@@ -46,12 +36,9 @@ const LIGHT_SHARE: f64 = 0.4;
 /// What single precision cannot hold is not asked for.
 const LEAST_ERROR: f64 = 1e-6;
 
-/// A segment's light is held on no more pieces than this.
-const MOST_TURNS: f32 = 256.0;
-
 /// Luminance and extinction over normalised scalars.
 #[derive(Debug)]
-enum Function {
+pub(crate) enum Function {
     OneField(Vec<Piece>, Weights),
     TwoFields([Vec<Piece>; 2]),
     Widgets(Vec<Widget>),
@@ -73,17 +60,14 @@ pub(crate) struct Look {
     pub(crate) further: Vec<Further>,
     /// The largest luminance, lit.
     pub(crate) brightest: f64,
-    has_second: bool,
-    function: Function,
+    pub(crate) has_second: bool,
+    pub(crate) function: Function,
     /// Not the integrals of emission-absorption, but those of Song et al., and the unit distances per device unit.
-    published: Option<Published>,
-    emission: f32,
-    light: Option<LightUniform>,
-    /// Errors of colour and of light for an opacity of 1.
-    errors: [f32; 2],
-    /// Bounds of the lit luminance's slope and curvature over the normal's angle.
-    slope: f32,
-    curvature: f32,
+    pub(crate) published: Option<Published>,
+    pub(crate) emission: f32,
+    pub(crate) light: Option<(LightUniform, Turning)>,
+    /// Error of a segment's colour for an opacity of 1.
+    pub(crate) color_error: f32,
 }
 
 /// Segments that were shaded one by one: those of a scene with two fields or light.
@@ -168,24 +152,19 @@ impl Look {
             // All along a ray may glow.
             brightest *= across * extinction;
         }
-        let (mut slope, mut curvature) = (0.0, 0.0);
+        let share = if scene.lighting.is_some() { COLOR_SHARE_LIT } else { COLOR_SHARE };
+        let error = |share: f64| (share * scene.method.max_error).max(LEAST_ERROR) as f32;
         let mut light = None;
         if let Some(lighting) = &scene.lighting {
             if lighting.gradients.len() != points {
                 return Err(RenderError::Missing("a gradient for every point"));
             }
             further.extend(gradient_values(lighting, eye));
-            light = Some(LightUniform::new(&lighting.light, |d| eye.frame(DVec3::from(d)).to_array()));
-            let ([ambient, diffuse, specular], p) = (lighting.light.shares(), lighting.light.shininess());
-            let k = lighting.light.silhouette();
-            let plain = brightest;
-            brightest = plain * (ambient + diffuse) + specular;
-            // cos^p is steepest where cos^2 = 1 - 1/p; (1 - |cos|)^k has the slope k at most, for k of 1 and more.
-            slope = plain * diffuse + specular * (p / std::f64::consts::E).sqrt().min(p) + brightest * k;
-            curvature = plain * diffuse + specular * p + brightest * k * (k + 1.0);
+            let uniform = LightUniform::new(&lighting.light, |d| eye.frame(DVec3::from(d)).to_array());
+            light = Some((uniform, Turning::new(&lighting.light, brightest, error(LIGHT_SHARE))));
+            let [ambient, diffuse, specular] = lighting.light.shares();
+            brightest = brightest * (ambient + diffuse) + specular;
         }
-        let share = if light.is_some() { COLOR_SHARE_LIT } else { COLOR_SHARE };
-        let error = |share: f64| (share * scene.method.max_error).max(LEAST_ERROR) as f32;
         Ok(Some(Look {
             further,
             brightest,
@@ -194,9 +173,7 @@ impl Look {
             published,
             emission: extinction as f32,
             light,
-            errors: [error(share), error(LIGHT_SHARE)],
-            slope: slope as f32,
-            curvature: curvature as f32,
+            color_error: error(share),
         }))
     }
 
@@ -215,27 +192,32 @@ impl Look {
     pub(crate) fn shade(&self, segment: &Segment) -> Integrated {
         match &self.light {
             None => self.classify(segment, 0.0, 1.0, 1.0),
-            Some(light) => match &self.function {
+            Some((light, turning)) => match &self.function {
                 Function::OneField(pieces, weights) => {
-                    let lit = self.illuminated(light, segment);
+                    let lit = self.illuminated(light, turning, segment);
                     one_field(&lit, pieces, *weights, segment.front[0], segment.back[0])
                 }
                 Function::TwoFields([color, opacity]) => {
-                    two_fields(&self.illuminated(light, segment), color, opacity, segment.front, segment.back)
+                    let lit = self.illuminated(light, turning, segment);
+                    two_fields(&lit, color, opacity, segment.front, segment.back)
                 }
-                Function::Widgets(_) | Function::Image(_) => self.lit(light, segment),
+                Function::Widgets(_) | Function::Image(_) => {
+                    let gradients = segment.gradients.map(|g| g.to_array());
+                    let classified = |from, to, factor| self.classify(segment, from, to, factor);
+                    integrate_lit(light, turning, gradients, segment.view, classified)
+                }
             },
         }
     }
 
     /// Of functions that are linear between nodes colour is exact: light may err by all that is allowed.
-    fn illuminated(&self, light: &LightUniform, segment: &Segment) -> Illuminated {
+    fn illuminated(&self, light: &LightUniform, turning: &Turning, segment: &Segment) -> Illuminated {
         Illuminated {
             light: *light,
             eye: segment.view,
             gradients: segment.gradients.map(|g| g.to_array()),
             length: segment.length,
-            error: self.errors[0] + self.errors[1],
+            error: self.color_error + turning.error,
         }
     }
 
@@ -251,65 +233,14 @@ impl Look {
             }
             Function::TwoFields([color, opacity]) => one(two_field_f32::integrate(color, opacity, front, back, length)),
             Function::Widgets(widgets) => match &self.published {
-                None => widgets_f32::integrate_share(widgets, front, back, length, self.errors[0]),
+                None => widgets_f32::integrate_share(widgets, front, back, length, self.color_error),
                 Some(published) => published.widgets(widgets, front, back, length, self.emission),
             },
             Function::Image(image) => match &self.published {
-                None => image_f32::integrate_counted(image, front, back, length, self.errors[0]),
+                None => image_f32::integrate_counted(image, front, back, length, self.color_error),
                 Some(published) => published.image(image, front, back, length, self.emission),
             },
         }
-    }
-
-    /// In how many pieces the light of a segment is held over which the normal turns by an angle.
-    fn turns(&self, angle: f32) -> f32 {
-        let error = angle * (self.slope / 4.0 + self.curvature * angle / 16.0);
-        (error / self.errors[1]).sqrt().ceil().clamp(1.0, MOST_TURNS)
-    }
-
-    fn lit(&self, light: &LightUniform, segment: &Segment) -> Integrated {
-        let [front, back] = segment.gradients;
-        let toward = if light.direction == [0.0; 3] { segment.view } else { light.direction };
-        let half = half_way(toward, segment.view);
-        let normal_at = |u: f32| normal((front + (back - front) * u).to_array());
-        let factor_at = |u: f32| silhouette_factor(light, normal_at(u), segment.view);
-        let angle = angle_between(front, back);
-        let count = self.turns(angle);
-        if count > 1.0 {
-            let whole = self.classify(segment, 0.0, 1.0, 1.0);
-            if whole.color[3] <= 0.0 {
-                // Nothing is seen: there is nothing to light.
-                return whole;
-            }
-        }
-        let [near, far] = [front.length(), back.length()];
-        let mut result = Integrated::default();
-        let mut from = 0.0;
-        for k in 1..=count as u32 {
-            // Where the normal has turned by k / count of the angle.
-            let turned = angle * (k as f32 / count);
-            let (ahead, behind) = (near * turned.sin(), far * (angle - turned).max(0.0).sin());
-            let to = if k as f32 == count { 1.0 } else { (ahead / (ahead + behind)).clamp(from, 1.0) };
-            let mut factor = 1.0;
-            if light.silhouette != 0.0 {
-                factor = (factor_at(from) + 4.0 * factor_at(0.5 * (from + to)) + factor_at(to)) / 6.0;
-            }
-            let part = self.classify(segment, from, to, factor);
-            let alpha = part.color[3];
-            if alpha > 0.0 {
-                let at = from + (to - from) * absorbed_at(alpha);
-                let [r, g, b, _] = part.color.map(|c| c / alpha);
-                let luminance = lit(light, [r, g, b], normal_at(at), toward, half);
-                let seen = (1.0 - result.color[3]) * alpha;
-                for channel in 0..3 {
-                    result.color[channel] += seen * luminance[channel];
-                }
-                result.color[3] += seen;
-            }
-            result.pieces += part.pieces;
-            from = to;
-        }
-        result
     }
 }
 
@@ -317,19 +248,6 @@ impl Look {
 pub(crate) struct Ends {
     pub(crate) scalars: [[f32; 2]; 2],
     pub(crate) gradients: [Vec3; 2],
-}
-
-/// Where in a piece of even extinction light is absorbed on average: at 1/2 if it is thin, near the front if thick.
-fn absorbed_at(alpha: f32) -> f32 {
-    let depth = -(-alpha.min(0.999_999)).ln_1p();
-    let [alpha, back, _] = weights_direct(depth, depth);
-    if alpha > 1e-6 { back / alpha } else { 0.5 }
-}
-
-/// The angle between two gradients; 0 if one of them is none, as nothing turns then.
-fn angle_between(a: Vec3, b: Vec3) -> f32 {
-    let [a, b] = [a, b].map(|g| Vec3::from(normal(g.to_array())));
-    if a == Vec3::ZERO || b == Vec3::ZERO { 0.0 } else { a.cross(b).length().atan2(a.dot(b)) }
 }
 
 fn scalar_values(scalar: &ScalarField) -> Further {

@@ -7,6 +7,7 @@ use tetlux_optics::Classification::{Image, OneField, TwoFields, Widgets};
 use tetlux_optics::widget::{Rectangle, Shape, WaveProfile, Widget};
 
 use crate::file::gradient_name;
+use crate::look;
 use crate::one_peak::beyond_published;
 use crate::reason::{of_classification, of_integrator, of_interpolation, of_projection, of_table_precision, of_target};
 use crate::{
@@ -109,11 +110,11 @@ impl Plan {
         if let Some(reason) = scene.method.refusal() {
             return Err(SceneError::Method(reason));
         }
+        if let Some(reason) = look::refusal(scene) {
+            return Err(SceneError::Method(reason));
+        }
         let integrator = choose_integrator(scene)?;
-        let (backend, backend_reason) = match cpu_only(scene) {
-            Some(what) => choose_cpu(&scene.method, what)?,
-            None => choose_backend(&scene.method, device)?,
-        };
+        let (backend, backend_reason) = choose_backend(&scene.method, device)?;
         let projection = choose_projection(&scene.method, backend, device);
         let (order, order_reason) = choose_order(scene, integrator, projection);
         let (target, target_reason) = choose_target(scene.method.target, projection, device);
@@ -248,28 +249,6 @@ fn choose_integrator(scene: &Scene) -> Result<Integrator, SceneError> {
 
 fn is_sine_squared(widget: &Widget) -> bool {
     matches!(widget.shape(), Shape::Wave { profile: WaveProfile::SineSquared, .. })
-}
-
-/// What of a scene the CPU back end alone draws, in words.
-fn cpu_only(scene: &Scene) -> Option<&'static str> {
-    if scene.classification.is_bivariate() {
-        return Some("classification by two fields");
-    }
-    scene.lighting.is_some().then_some("light")
-}
-
-/// The back end of a scene that the CPU's alone draws.
-fn choose_cpu(method: &Method, what: &str) -> Result<(Backend, String), SceneError> {
-    if method.backend == Backend::Gpu {
-        return Err(SceneError::Method(format!("{what} is drawn by the CPU back end alone: use --backend cpu")));
-    }
-    if let Some(other) = method.gpu_only() {
-        return Err(SceneError::Method(format!(
-            "{what} is drawn by the CPU back end alone, and {other} is a method of graphics adapters: leave that out"
-        )));
-    }
-    let why = if method.backend == Backend::Cpu { "as asked".into() } else { format!("{what} needs it") };
-    Ok((Backend::Cpu, why))
 }
 
 /// What gradients are computed for, or that they are not.

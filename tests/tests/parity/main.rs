@@ -8,3 +8,4 @@ mod lookups;
 mod methods;
 mod pictures;
 mod thick;
+mod two_fields;

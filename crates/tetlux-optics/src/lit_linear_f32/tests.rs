@@ -38,11 +38,7 @@ fn random_vector(random: &mut Random) -> [f32; 3] {
 }
 
 /// In f64, by so many steps that linear ends do not matter.
-fn exact(
-    light: &Light,
-    segment: &Illuminated,
-    at: impl Fn(f64) -> ([f64; 3], f64),
-) -> [f64; 4] {
+fn exact(light: &Light, segment: &Illuminated, at: impl Fn(f64) -> ([f64; 3], f64)) -> [f64; 4] {
     let eye = segment.eye.map(f64::from);
     let point = |u: f64| {
         let [f, b] = segment.gradients;
@@ -113,7 +109,10 @@ fn measured_errors_keep_to_the_bound_whatever_is_lit() {
             assert!(apart <= allowed + ROUNDING, "{apart:e} for {allowed:e}: {light:?} {segment:?} {transfer:?}");
             worst = worst.max((apart - ROUNDING) / allowed);
         }
-        println!("error {error:.0e}: largest share of the bound {worst:.2}, {:.1} parts a segment", f64::from(parts) / 150.0);
+        println!(
+            "error {error:.0e}: largest share of the bound {worst:.2}, {:.1} parts a segment",
+            f64::from(parts) / 150.0
+        );
         // The planted difference: the bound is one, not some number far above what is measured.
         assert!(error < 1e-4 || worst > 0.05, "{worst}");
     }
@@ -146,10 +145,8 @@ fn a_normal_that_does_not_turn_takes_a_part_a_piece() {
 #[test]
 fn missing_and_opposite_gradients_stay_finite() {
     let light = Light::new(Some([0.0, 0.0, 1.0]), [0.2, 0.8, 0.5], 1.0, 0.5).unwrap();
-    let fog = TransferFunction::new(
-        vec![ColorNode { s: 0.0, rgb: [1.0; 3] }],
-        vec![OpacityNode { s: 0.0, opacity: 2.0 }],
-    );
+    let fog =
+        TransferFunction::new(vec![ColorNode { s: 0.0, rgb: [1.0; 3] }], vec![OpacityNode { s: 0.0, opacity: 2.0 }]);
     let pieces = pieces(&fog.unwrap(), [0.0, 1.0], 1.0);
     for gradients in [
         [[0.0; 3]; 2],

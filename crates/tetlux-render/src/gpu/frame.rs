@@ -4,12 +4,14 @@ use std::cell::Cell;
 
 use wgpu::util::DeviceExt;
 
-use super::Open;
+use super::look;
 use super::picture::Picture;
 use super::pipelines::Pipelines;
+use super::spent::{Count, counters};
 use super::stretch::{scissor, stretches};
-use super::tables::{Lookup, binding_of, upload};
+use super::tables::{LAYERS, Lookup, binding_of, upload, upload_layers};
 use super::variant::{Binding, CELL_BYTES, Geometry, Variant};
+use super::{Drawn, Open};
 use crate::{Job, Resources};
 
 /// Invocations a workgroup of the compute stages, as shaders/stages have them.
@@ -65,7 +67,7 @@ impl<'a> Maker<'a> {
         self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
     }
 
-    fn empty(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    pub(super) fn empty(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
         self.count(1, 0, size);
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
@@ -88,7 +90,10 @@ impl<'a> Maker<'a> {
         match binding {
             Binding::View => self.filled("view", bytemuck::bytes_of(&job.view), wgpu::BufferUsages::UNIFORM),
             Binding::Pieces => {
-                let pieces: Vec<[[f32; 4]; 3]> = job.pieces.iter().map(|p| [p.low, p.high, p.s]).collect();
+                // Those of two fields are the look's.
+                let pieces = job.look.as_ref().and_then(look::pieces);
+                let pieces = pieces.as_deref().unwrap_or(job.pieces);
+                let pieces: Vec<[[f32; 4]; 3]> = pieces.iter().map(|p| [p.low, p.high, p.s]).collect();
                 self.filled("pieces", bytemuck::cast_slice(&pieces), storage)
             }
             Binding::Points => self.filled("points", bytemuck::cast_slice(&job.mesh.points), storage),
@@ -96,6 +101,12 @@ impl<'a> Maker<'a> {
             Binding::CellScalars => self.filled("cell scalars", bytemuck::cast_slice(&job.mesh.cell_scalars), storage),
             Binding::Order => self.filled("order", bytemuck::cast_slice(job.order), storage),
             Binding::EntryPieces => self.filled("pieces of cells", bytemuck::cast_slice(job.entry_pieces), storage),
+            Binding::Spent => counters(self),
+            Binding::Seconds | Binding::Gradients | Binding::Look | Binding::Widgets | Binding::Texels => {
+                let contents = job.look.as_ref().map_or(Vec::new(), |look| look::contents(look, binding));
+                let usage = if binding == Binding::Look { wgpu::BufferUsages::UNIFORM } else { storage };
+                self.filled("look", &contents, usage)
+            }
         }
     }
 }
@@ -103,15 +114,21 @@ impl<'a> Maker<'a> {
 /// The bind group of the tables, made.
 fn tables(make: &Maker, queue: &wgpu::Queue, layout: &wgpu::BindGroupLayout, job: &Job) -> wgpu::BindGroup {
     let mut lookup = Lookup { low: [[0.0; 4]; 2], range: [[1.0; 4]; 2], length: [job.table_length, 0.0, 0.0, 0.0] };
-    let textures: Vec<_> = job
-        .tables
-        .iter()
-        .map(|table| {
-            let (texture, bytes) = upload(make.device, queue, table, job.table_precision, &mut lookup);
-            make.count(0, 1, bytes);
-            (binding_of(table), texture.create_view(&wgpu::TextureViewDescriptor::default()))
-        })
-        .collect();
+    let mut view = |binding, (texture, bytes): (wgpu::Texture, u64)| {
+        make.count(0, 1, bytes);
+        (binding, texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    };
+    let textures: Vec<_> = match job.tables {
+        // Those of several widgets.
+        [first, others @ ..] if !others.is_empty() && job.tables.iter().all(|table| table.axes().len() == 2) => {
+            let layers = upload_layers(make.device, queue, first, others, job.table_precision, &mut lookup);
+            vec![view(LAYERS, layers)]
+        }
+        tables => {
+            let mut one = |table| upload(make.device, queue, table, job.table_precision, &mut lookup);
+            tables.iter().map(|table| view(binding_of(table), one(table))).collect()
+        }
+    };
     let lookup = make.filled("lookup", bytemuck::bytes_of(&lookup), wgpu::BufferUsages::UNIFORM);
     let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
     let textures = textures.iter().map(|(binding, view)| entry(*binding, wgpu::BindingResource::TextureView(view)));
@@ -127,14 +144,15 @@ pub(super) fn draw(
     pipelines: &Pipelines,
     groups: Option<&Pipelines>,
     job: &Job,
-) -> Result<(Vec<[f32; 4]>, Resources), String> {
+) -> Result<Drawn, String> {
     let Open { device, queue } = open;
     let cells = job.order.len() as u32;
     let pipeline_count = pipelines.count() + groups.map_or(0, Pipelines::count);
     let made = Resources { pipelines: pipeline_count, cells: job.order.len(), ..Resources::default() };
     let make = Maker::new(device, made);
-    let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b as u32, make.scene(b, job))).collect();
-    let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
+    let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b, make.scene(b, job))).collect();
+    let count = Count::new(&make, &scene);
+    let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding as u32, buffer)).collect();
     let scene = make.bind(&pipelines.scene, &scene);
 
     let tables = pipelines.tables.as_ref().map(|layout| tables(&make, queue, layout, job));
@@ -160,9 +178,9 @@ pub(super) fn draw(
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut load = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
     for stretch in stretches {
-        let count = stretch.cells.end - stretch.cells.start;
+        let cells = stretch.cells.end - stretch.cells.start;
         let pipelines = if stretch.group { groups.unwrap_or(pipelines) } else { pipelines };
-        let uniform = Batch { last: stretch.cells.end.saturating_sub(1), count, unused: [0; 2] };
+        let uniform = Batch { last: stretch.cells.end.saturating_sub(1), count: cells, unused: [0; 2] };
         let uniform = make.filled("batch", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
         let projected = projected.as_ref().filter(|_| pipelines.compute.is_some());
         let buffers: Vec<_> = [&uniform].into_iter().chain(projected).collect();
@@ -172,7 +190,7 @@ pub(super) fn draw(
             pass.set_pipeline(&stage.pipeline);
             pass.set_bind_group(0, &scene, &[]);
             pass.set_bind_group(1, &make.bind(&stage.batch, &buffers), &[]);
-            pass.dispatch_workgroups(count.div_ceil(WORKGROUP), 1, 1);
+            pass.dispatch_workgroups(cells.div_ceil(WORKGROUP), 1, 1);
         }
         let attachment = wgpu::RenderPassColorAttachment {
             view: &target,
@@ -196,16 +214,18 @@ pub(super) fn draw(
             pass.draw(0..3, 0..1);
         } else if let (Some(indices), Some(pattern)) = (&indices, geometry.indices) {
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..pattern.len() as u32 * count, 0, 0..1);
+            pass.draw_indexed(0..pattern.len() as u32 * cells, 0, 0..1);
         } else if geometry.instanced {
-            pass.draw(0..geometry.vertices, 0..count);
+            pass.draw(0..geometry.vertices, 0..cells);
         } else {
-            pass.draw(0..geometry.vertices * count, 0..1);
+            pass.draw(0..geometry.vertices * cells, 0..1);
         }
         drop(pass);
         load = wgpu::LoadOp::Load;
     }
     picture.copy(&mut encoder);
+    count.iter().for_each(|count| count.copy(&mut encoder));
     queue.submit([encoder.finish()]);
-    Ok((picture.read(device)?, make.made()))
+    let spent = count.map(|count| count.read(device)).transpose()?;
+    Ok(Drawn { pixels: picture.read(device)?, resources: make.made(), spent })
 }

@@ -2,10 +2,11 @@
 
 use wgpu::{BindingType, BufferBindingType, ShaderStages};
 
-use super::Open;
 use super::frame::Maker;
 use super::picture::Picture;
+use super::spent::Count;
 use super::variant::{Binding, Variant};
+use super::{Drawn, Open};
 use crate::march::March;
 use crate::{Job, RenderError, Resources};
 
@@ -51,7 +52,7 @@ impl Marcher {
             let entries: Vec<_> = entries.iter().map(entry).collect();
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };
-        let of = |binding| (binding as u32, if binding == Binding::View { uniform } else { storage });
+        let of = |binding: Binding| (binding as u32, buffer(binding.kind()));
         let scene: Vec<_> = variant.bindings().into_iter().map(of).collect();
         let scene = layout("scene", &scene);
         let tables = layout("march", &[(0, uniform), (1, storage), (2, storage), (3, storage), (4, picture)]);
@@ -73,17 +74,12 @@ impl Marcher {
     }
 
     /// Makes the picture; the error is what the driver said.
-    pub(super) fn draw(
-        &self,
-        open: &Open,
-        variant: &Variant,
-        job: &Job,
-        march: &March,
-    ) -> Result<(Vec<[f32; 4]>, Resources), String> {
+    pub(super) fn draw(&self, open: &Open, variant: &Variant, job: &Job, march: &March) -> Result<Drawn, String> {
         let Open { device, queue } = open;
         let make = Maker::new(device, Resources { pipelines: 1, cells: job.order.len(), ..Resources::default() });
-        let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b as u32, make.scene(b, job))).collect();
-        let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
+        let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b, make.scene(b, job))).collect();
+        let count = Count::new(&make, &scene);
+        let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding as u32, buffer)).collect();
         let scene = make.bind(&self.scene, &scene);
         let steps = u32::try_from(job.order.len()).unwrap_or(u32::MAX);
         let limits = Limits { opaque: job.opaque, steps, unused: [0; 2] };
@@ -117,7 +113,9 @@ impl Marcher {
         pass.dispatch_workgroups(columns, rows, 1);
         drop(pass);
         picture.copy(&mut encoder);
+        count.iter().for_each(|count| count.copy(&mut encoder));
         queue.submit([encoder.finish()]);
-        Ok((picture.read(device)?, make.made()))
+        let spent = count.map(|count| count.read(device)).transpose()?;
+        Ok(Drawn { pixels: picture.read(device)?, resources: make.made(), spent })
     }
 }

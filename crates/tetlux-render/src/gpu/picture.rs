@@ -58,14 +58,7 @@ impl Picture {
 
     /// The pixels, top row first, once the device is done; the error is what the driver said.
     pub(super) fn read(&self, device: &wgpu::Device) -> Result<Vec<[f32; 4]>, String> {
-        let (sender, receiver) = std::sync::mpsc::channel();
-        self.readback.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only if polling failed, which is reported.
-            let _ = sender.send(result);
-        });
-        device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| e.to_string())?;
-        receiver.recv().map_err(|e| e.to_string())?.map_err(|e| e.to_string())?;
-        let bytes = self.readback.get_mapped_range(..).map_err(|e| e.to_string())?;
+        let bytes = mapped(device, &self.readback)?;
         let used = (self.size.width * pixel_bytes(self.format)) as usize;
         let mut pixels = Vec::with_capacity(self.size.width as usize * self.size.height as usize);
         for row in bytes.chunks_exact(self.row_bytes as usize) {
@@ -73,6 +66,18 @@ impl Picture {
         }
         Ok(pixels)
     }
+}
+
+/// What a buffer that can be mapped holds, once the device is done; the error is what the driver said.
+pub(super) fn mapped(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, String> {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        // The receiver is gone only if polling failed, which is reported.
+        let _ = sender.send(result);
+    });
+    device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| e.to_string())?;
+    receiver.recv().map_err(|e| e.to_string())?.map_err(|e| e.to_string())?;
+    buffer.get_mapped_range(..).map_err(|e| e.to_string())
 }
 
 /// Bytes of a pixel.

@@ -50,7 +50,11 @@ impl Pipelines {
         let scene: Vec<_> = variant
             .bindings()
             .into_iter()
-            .map(|binding| (binding as u32, any, if binding == Binding::View { uniform } else { storage }))
+            .map(|binding| {
+                // Vertex stages may not write.
+                let stages = if binding == Binding::Spent { any - ShaderStages::VERTEX } else { any };
+                (binding as u32, stages, buffer(binding.kind()))
+            })
             .collect();
         let scene = layout("scene", &scene);
         let tables = variant.tables();

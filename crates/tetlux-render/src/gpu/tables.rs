@@ -1,5 +1,7 @@
 //! Tables as textures.
 
+use std::sync::Arc;
+
 use tetlux_scene::TablePrecision;
 use tetlux_tables::Table;
 
@@ -16,6 +18,9 @@ pub(crate) struct Lookup {
 pub(super) fn binding_of(table: &Table) -> u32 {
     table.axes().len() as u32 - 1
 }
+
+/// The binding of tables that are layers of one texture.
+pub(super) const LAYERS: u32 = 2;
 
 /// Texels as a texture holds them, and how a shader decodes them.
 pub(super) struct Encoded {
@@ -85,14 +90,49 @@ pub(super) fn upload(
     let encoded = encode(table, precision);
     let slot = table.axes().len() - 2;
     (lookup.low[slot], lookup.range[slot]) = (encoded.low, encoded.range);
-    let [width, height, depth] = table.spec().size;
+    let dimension = if slot == 0 { wgpu::TextureDimension::D2 } else { wgpu::TextureDimension::D3 };
+    let texture = texture(device, queue, &table.spec().id, table.spec().size, dimension, &encoded);
+    (texture, encoded.bytes.len() as u64)
+}
+
+/// Up to four tables of two axes, one channel and one size as the layers of one texture, with their decoding in the
+/// components of the first of `lookup`, and their bytes.
+pub(super) fn upload_layers(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    first: &Table,
+    others: &[Arc<Table>],
+    precision: TablePrecision,
+    lookup: &mut Lookup,
+) -> (wgpu::Texture, u64) {
+    let [width, height, _] = first.spec().size;
+    let mut all = encode(first, precision);
+    (lookup.low[0][0], lookup.range[0][0]) = (all.low[0], all.range[0]);
+    for (table, layer) in others.iter().zip(1..) {
+        let encoded = encode(table, precision);
+        (lookup.low[0][layer], lookup.range[0][layer]) = (encoded.low[0], encoded.range[0]);
+        all.bytes.extend(encoded.bytes);
+    }
+    let size = [width, height, 1 + others.len() as u32];
+    let texture = texture(device, queue, "widgets", size, wgpu::TextureDimension::D2, &all);
+    (texture, all.bytes.len() as u64)
+}
+
+fn texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    [width, height, depth]: [u32; 3],
+    dimension: wgpu::TextureDimension,
+    encoded: &Encoded,
+) -> wgpu::Texture {
     let size = wgpu::Extent3d { width, height, depth_or_array_layers: depth };
     let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(&table.spec().id),
+        label: Some(label),
         size,
         mip_level_count: 1,
         sample_count: 1,
-        dimension: if slot == 0 { wgpu::TextureDimension::D2 } else { wgpu::TextureDimension::D3 },
+        dimension,
         format: encoded.format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
@@ -103,7 +143,7 @@ pub(super) fn upload(
         rows_per_image: Some(height),
     };
     queue.write_texture(texture.as_image_copy(), &encoded.bytes, layout, size);
-    (texture, encoded.bytes.len() as u64)
+    texture
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use tetlux_scene::{CellProjection, Classification, Integrator, Interpolation, Plan, Target};
 use tetlux_shaders::{Choice, DEFAULTS, choose};
 
+use super::look::LookVariant;
+
 /// What makes one set of pipelines differ from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Variant {
@@ -10,6 +12,8 @@ pub(crate) struct Variant {
     pub(crate) group: bool,
     pub(crate) orthographic: bool,
     pub(crate) cell_data: bool,
+    /// What there is beyond one field's transfer function.
+    pub(crate) look: Option<LookVariant>,
     pub(crate) projection: CellProjection,
     pub(crate) interpolation: Interpolation,
     pub(crate) integrator: Integrator,
@@ -51,14 +55,30 @@ pub(crate) enum Binding {
     CellScalars = 4,
     Order = 5,
     EntryPieces = 6,
+    Seconds = 8,
+    Gradients = 9,
+    Look = 10,
+    Widgets = 11,
+    Texels = 12,
+    Spent = 13,
+}
+
+impl Binding {
+    pub(crate) fn kind(self) -> wgpu::BufferBindingType {
+        match self {
+            Binding::View | Binding::Look => wgpu::BufferBindingType::Uniform,
+            other => wgpu::BufferBindingType::Storage { read_only: other != Binding::Spent },
+        }
+    }
 }
 
 impl Variant {
-    pub(crate) fn new(plan: &Plan, cell_data: bool) -> Variant {
+    pub(crate) fn new(plan: &Plan, cell_data: bool, look: Option<LookVariant>) -> Variant {
         Variant {
             group: false,
             orthographic: plan.view.orthographic,
             cell_data,
+            look,
             projection: plan.projection,
             interpolation: plan.interpolation,
             integrator: plan.integrator,
@@ -120,7 +140,7 @@ impl Variant {
             Target::Rgba8Dither => "output::dither",
             Target::Auto | Target::Rgba16f | Target::Rgba32f => "output::plain",
         };
-        choose(
+        let choices = choose(
             DEFAULTS,
             &[
                 ("data", data),
@@ -132,7 +152,11 @@ impl Variant {
                 ("source", source),
                 ("weights", weights),
             ],
-        )
+        );
+        match self.look {
+            Some(look) => choose(&choices, &look.choices()),
+            None => choices,
+        }
     }
 
     pub(crate) fn geometry(&self) -> Geometry {
@@ -160,7 +184,7 @@ impl Variant {
     /// The buffers of bind group 0 that the shaders read, ascending.
     pub(crate) fn bindings(&self) -> Vec<Binding> {
         let mut bindings = vec![Binding::View];
-        if !self.integrator.is_pre_integrated() {
+        if !self.integrator.is_pre_integrated() && self.look.is_none_or(|look| look.has_pieces()) {
             bindings.push(Binding::Pieces);
         }
         bindings.extend([Binding::Points, Binding::Cells]);
@@ -173,15 +197,17 @@ impl Variant {
         if self.classification == Classification::PostClip {
             bindings.push(Binding::EntryPieces);
         }
+        bindings.extend(self.look.iter().flat_map(LookVariant::bindings));
         bindings
     }
 
     /// The axes of the tables that are bound, beside their `Lookup`; none: bind group 2 is not there.
     pub(crate) fn tables(&self) -> &'static [wgpu::TextureViewDimension] {
-        use wgpu::TextureViewDimension::{D2, D3};
+        use wgpu::TextureViewDimension::{D2, D2Array, D3};
         match self.integrator {
             Integrator::Psi | Integrator::Q => &[D2],
-            Integrator::Preint | Integrator::PreintLog => &[D3],
+            Integrator::Preint | Integrator::PreintLog | Integrator::Approximate => &[D3],
+            Integrator::Analytic => &[D2Array],
             Integrator::PreintQ => &[D2, D3],
             _ => &[],
         }
@@ -214,6 +240,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use tetlux_scene::Method;
 
+    use super::super::look::Classified;
     use super::*;
 
     /// Every variant that a method which is not refused can have.
@@ -229,13 +256,14 @@ mod tests {
                             && interpolation != Interpolation::Auto
                             && integrator != Integrator::Auto
                             && classification != Classification::Auto;
-                        if decided && method.refusal().is_none() {
+                        if decided && !integrator.is_for_two_fields() && method.refusal().is_none() {
                             let target = Target::ALL[variants.len() % Target::ALL.len()];
                             let [orthographic, cell_data] = [1, 2].map(|bit| variants.len() & bit != 0);
                             variants.push(Variant {
                                 group: false,
                                 orthographic,
                                 cell_data,
+                                look: None,
                                 projection,
                                 interpolation,
                                 integrator,
@@ -248,6 +276,41 @@ mod tests {
             }
         }
         variants
+    }
+
+    /// Every look, each with the geometries that draw it.
+    fn looks() -> Vec<Variant> {
+        let mut looks = Vec::new();
+        for (function, integrator) in [
+            (Classified::OneField, Integrator::Direct),
+            (Classified::TwoFields, Integrator::Direct),
+            (Classified::Widgets, Integrator::Adaptive),
+            (Classified::Image, Integrator::Adaptive),
+            (Classified::Analytic, Integrator::Analytic),
+            (Classified::ApproximateWidgets, Integrator::Approximate),
+            (Classified::ApproximateImage, Integrator::Approximate),
+        ] {
+            for (lit, second_by_cell) in [(false, false), (false, true), (true, false), (true, true)] {
+                // Neither is drawn: one field without light is no look, and the published modes have none.
+                let plain = function == Classified::OneField && (!lit || second_by_cell)
+                    || lit && integrator.is_published_bivariate();
+                for projection in [CellProjection::Pt, CellProjection::Vicp] {
+                    let variant = Variant {
+                        group: false,
+                        orthographic: false,
+                        cell_data: looks.len() % 3 == 0,
+                        look: Some(LookVariant { function, second_by_cell, lit }),
+                        projection,
+                        interpolation: Interpolation::Ray,
+                        integrator,
+                        classification: Classification::PostExact,
+                        target: Target::Rgba32f,
+                    };
+                    looks.extend((!plain).then_some(variant));
+                }
+            }
+        }
+        looks
     }
 
     /// The module as naga has it; it names the resources that are there, used or not.
@@ -263,8 +326,9 @@ mod tests {
 
     #[test]
     fn every_variant_composes_and_binds_what_its_shaders_name() {
-        let variants = variants();
+        let mut variants = variants();
         assert!(variants.len() > 100);
+        variants.extend(looks());
         // Pieces of cells are never in groups.
         let whole = variants.iter().filter(|v| v.classification != Classification::PostClip);
         let of_groups: Vec<Variant> = whole.map(|v| v.of_groups()).collect();
@@ -290,5 +354,62 @@ mod tests {
             }
             assert_eq!(named, bound, "{variant:?}");
         }
+    }
+
+    #[test]
+    fn a_march_of_every_look_binds_what_its_shader_names() {
+        for variant in looks()
+            .into_iter()
+            .filter(|v| !v.integrator.uses_table())
+            .map(|v| Variant { projection: CellProjection::March, ..v })
+        {
+            let module = validated("stages::march", &variant);
+            let bindings = module.global_variables.iter().filter_map(|(_, v)| v.binding);
+            let mut named: Vec<u32> = bindings.filter(|b| b.group == 0).map(|b| b.binding).collect();
+            named.sort_unstable();
+            let bound: Vec<u32> = variant.bindings().into_iter().map(|b| b as u32).collect();
+            assert_eq!(named, bound, "{variant:?}");
+        }
+    }
+
+    /// What no scene of one field without light may hold.
+    const OF_LOOKS: [&str; 17] = [
+        "function::",
+        "lib::erf",
+        "lib::further",
+        "lib::gradients",
+        "lib::image",
+        "lib::integrated",
+        "lib::light",
+        "lib::lit",
+        "lib::look\n",
+        "lib::spent",
+        "lib::two_fields",
+        "lib::widget",
+        "quantity::lit",
+        "quantity::pair",
+        "sample::",
+        "second::",
+        "shading::two_scalars",
+    ];
+
+    fn modules_of_looks(variant: &Variant) -> Vec<&'static str> {
+        let stages = [variant.stage()].into_iter().chain(variant.geometry().compute);
+        let composed = |stage| tetlux_shaders::compose(stage, &variant.choices()).unwrap();
+        let source: String = stages.map(composed).collect();
+        OF_LOOKS.into_iter().filter(|module| source.contains(&format!("// ---- {module}"))).collect()
+    }
+
+    #[test]
+    fn a_scene_of_one_field_compiles_and_binds_nothing_of_the_others() {
+        for variant in variants() {
+            assert_eq!(modules_of_looks(&variant), [""; 0], "{variant:?}");
+            assert!(variant.bindings().iter().all(|binding| (*binding as u32) < Binding::Seconds as u32));
+        }
+        // Each is found where it is.
+        let mut found: Vec<&str> = looks().iter().flat_map(modules_of_looks).collect();
+        found.sort_unstable();
+        found.dedup();
+        assert_eq!(found, OF_LOOKS);
     }
 }
