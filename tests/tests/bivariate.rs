@@ -11,8 +11,8 @@ use tetlux_optics::widget::{BivariateFunction, Rectangle, Shape, WaveProfile, Wi
 use tetlux_optics::{Classification, ImageFunction, Light};
 use tetlux_render::{Frame, Model, Resources, table_specs};
 use tetlux_scene::{
-    Backend, Camera, CellProjection, Integrator, Interpolation, Lighting, Method, Order, Plan, Scene, TablePrecision,
-    Target,
+    Backend, Camera, CellBoxes, CellProjection, Integrator, Interpolation, Lighting, Method, Order, Plan, Scene,
+    SceneFile, TablePrecision, Target,
 };
 use tetlux_tables::{Table, TableSpec};
 use tetlux_tests::{Random, largest_error, pixel_error, orthographic, perspective, reference, renderer, transfer};
@@ -234,6 +234,9 @@ fn leaving_cells_out_changes_no_picture() {
     let mut same = |function: Classification, camera| {
         let scene = scene(&mesh, "y", function, None, camera);
         let culled = Plan::new(&scene, &mesh, renderer().device()).unwrap();
+        let [first, second] = [Some(&scene.scalar), scene.second.as_ref()].map(|s| mesh.scalar_ranges(s.unwrap()));
+        let kept = Plan::with_boxes(&scene, &mesh, renderer().device(), &CellBoxes::new(&first, &second)).unwrap();
+        assert_eq!(kept.cells, culled.cells, "boxes that were kept");
         let whole = Plan { cells: (0..mesh.cells().len() as u32).collect(), ..culled.clone() };
         skipped += culled.skips.transparent;
         let [a, b] = [culled, whole].map(|plan| renderer().render(&scene, &Model::new(&mesh), &plan).unwrap().image);
@@ -335,6 +338,31 @@ fn published_modes_are_the_same_on_both_back_ends() {
             assert_eq!(cpu.spent.unwrap().pieces > 0, gpu.spent.unwrap().pieces > 0);
         }
     }
+}
+
+#[test]
+fn a_scene_of_one_field_pays_nothing_for_two() {
+    let mesh = mesh();
+    let text = "[field]\nname = \"x\"\n[image]\nsize = [26, 20]\n[transfer]\n";
+    let of =
+        |transfer: &str| SceneFile::parse("a.toml", &format!("{text}{transfer}")).unwrap().scene(&mesh, 0).unwrap();
+    let one = of("color = [[-1.5, 0.9, 0.1, 0.2], [1.5, 0.1, 0.3, 1.0]]\nopacity = [[-1.0, 1.5], [1.0, 0.0]]");
+    assert!(one.second.is_none() && one.lighting.is_none(), "no gradient is computed, no second field read");
+    let plan = Plan::new(&one, &mesh, renderer().device()).unwrap();
+    assert!(plan.to_string().contains("skipped: nothing asks for them"), "{plan}");
+    assert_eq!(plan.integrator, Integrator::Direct);
+    assert!(table_specs(&one, &mesh, &plan).is_empty(), "no table");
+    let frame = renderer().render(&one, &Model::new(&mesh), &plan).unwrap();
+    assert_eq!(frame.spent, None, "no segment is shaded one by one from further fields");
+    // The planted difference: widgets over the gradient pay for all of it.
+    let two = of("[[widget]]\nshape = \"gaussian\"\ncenter = [0.0, 1.0]\nsigma = [0.5, 1.0]\nmax_opacity = 1.0\n\
+                  color = [1.0, 0.5, 0.1]");
+    assert!(two.second.is_some());
+    let (plan, frame) = drawn_by(&mesh, &two, Method { integrator: Integrator::Analytic, ..Method::default() });
+    assert!(plan.to_string().contains("computed: their magnitude"), "{plan}");
+    let scene = Scene { method: Method { integrator: Integrator::Analytic, ..Method::default() }, ..two };
+    assert_eq!(table_specs(&scene, &mesh, &plan).len(), 3);
+    assert!(frame.spent.is_some());
 }
 
 #[test]

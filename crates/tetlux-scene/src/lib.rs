@@ -19,6 +19,7 @@
 //! ```
 
 mod camera;
+mod culling;
 mod document;
 mod error;
 mod file;
@@ -32,6 +33,7 @@ mod reason;
 mod view;
 
 pub use camera::{Camera, Projection};
+pub use culling::CellBoxes;
 pub use error::SceneError;
 pub use file::{CameraSpec, FieldSpec, NodeRange, SceneFile, TransferSource, UnitDistance, gradient_magnitude};
 pub use frequency::{FrequencyLimits, frequency_limits};
