@@ -13,11 +13,11 @@ use tetlux_optics::segment::weights;
 use tetlux_optics::segment_f32::weights_direct;
 use tetlux_optics::symmetric_f32::weights_symmetric;
 use tetlux_optics::transfer_f32::{Weights, integrate, piece_at, pieces};
-use tetlux_optics::widget::{BivariateFunction, Rectangle, Shape, Widget};
+use tetlux_optics::widget::{BivariateFunction, Shape, Widget};
 use tetlux_order::{Eye, centroid};
 use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray};
 use tetlux_render::{Model, Renderer};
-use tetlux_scene::{Backend, Method, Order, Plan};
+use tetlux_scene::{Backend, CellBoxes, Method, Order, Plan};
 use tetlux_tables::{Table, TableSpec};
 
 /// Hexahedra along an edge of the cube: 93 312 tetrahedra.
@@ -87,18 +87,19 @@ fn culling(c: &mut Criterion) {
         Widget::new(shape, None, 2.0, [1.0; 3]).unwrap_or_else(|e| panic!("{e}"))
     };
     let mut random = Random::new(3);
-    let ranges: Vec<Rectangle> = (0..500_000)
-        .map(|_| {
-            let [x, y] = [random.unit(), random.unit()];
-            Rectangle { s: [x, x + 0.03], g: [y, y + 0.03] }
-        })
-        .collect();
+    let mut ranges = || -> Vec<[f64; 2]> {
+        let low = |_| random.unit();
+        (0..500_000).map(low).map(|x| [x, x + 0.03]).collect()
+    };
+    let (first, second) = (ranges(), ranges());
     let mut group = c.benchmark_group("culling");
-    group.throughput(Throughput::Elements(ranges.len() as u64));
+    group.throughput(Throughput::Elements(first.len() as u64));
+    group.bench_function("boxes", |b| b.iter(|| CellBoxes::new(&first, &second)));
+    let boxes = CellBoxes::new(&first, &second);
     for count in [1, 5] {
         let function = BivariateFunction { widgets: (0..count).map(|k| widget(0.1 + 0.2 * f64::from(k))).collect() };
         group.bench_function(format!("{count} widgets"), |b| {
-            b.iter(|| ranges.iter().filter(|range| function.is_visible_over(range)).count());
+            b.iter(|| boxes.visible(&function));
         });
     }
     group.finish();

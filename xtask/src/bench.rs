@@ -12,6 +12,7 @@ mod paper;
 mod peer;
 mod race;
 mod scaling;
+mod song;
 mod table;
 mod targets;
 

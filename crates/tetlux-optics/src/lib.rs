@@ -27,6 +27,7 @@
 //! | [`lit_f32`] | segments lit to a stated error, in f32 |
 //! | [`emphasis`] | opacity at the vertices, emphasised by first and second derivatives |
 //! | [`vertex_f32`] | segments of what is classified at the vertices, in the shader's arithmetic |
+//! | [`lit_linear_f32`] | lit segments of one or two fields' transfer functions, to a proved error, in f32 |
 //! | [`erf_f32`] | the error function as a shader has it |
 //! | [`widget_f32`], [`widgets_f32`] | widgets, and segments through any number of them to a stated error, in f32 |
 //! | [`two_field_f32`] | colour of one scalar, opacity of another, exact, in f32 |
@@ -60,6 +61,7 @@ pub mod image_function;
 pub mod light;
 pub mod light_f32;
 pub mod lit_f32;
+pub mod lit_linear_f32;
 pub mod preset;
 pub mod published;
 pub mod published_f32;

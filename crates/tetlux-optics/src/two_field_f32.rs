@@ -23,7 +23,7 @@ pub fn axes(transfer: &TransferFunction, ranges: [[f64; 2]; 2], extinction: f64)
 }
 
 /// Where a scalar that rises by `rise` from `front` leaves a piece; 2 if it does not move.
-fn leaves(piece: &Piece, front: f32, rise: f32) -> f32 {
+pub(crate) fn leaves(piece: &Piece, front: f32, rise: f32) -> f32 {
     if rise.abs() < 1e-20 {
         return 2.0;
     }
@@ -32,7 +32,7 @@ fn leaves(piece: &Piece, front: f32, rise: f32) -> f32 {
 }
 
 /// The piece after this one in the direction of a scalar, within the list.
-fn next(k: usize, rise: f32, count: usize) -> usize {
+pub(crate) fn next(k: usize, rise: f32, count: usize) -> usize {
     if rise > 0.0 { (k + 1).min(count - 1) } else { k.max(1) - 1 }
 }
 

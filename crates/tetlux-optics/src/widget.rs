@@ -266,6 +266,12 @@ impl Widget {
         self.max_opacity * share
     }
 
+    /// The rectangle outside which nothing of the widget is seen, or, of a Gaussian, less than [`GAUSSIAN_TAIL`] of its
+    /// peak. Of a widget without opacity its ends descend: nothing lies inside.
+    pub fn footprint(&self) -> &Rectangle {
+        &self.footprint
+    }
+
     /// Whether anything of the widget may be seen where s and g stay in a rectangle, for culling: no means that the
     /// opacity is 0 there or, of a Gaussian, below [`GAUSSIAN_TAIL`] of its peak. A comparison with the rectangle around
     /// the widget (Song et al. 2009, section 3.1).

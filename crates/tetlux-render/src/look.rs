@@ -16,6 +16,7 @@ use tetlux_optics::Classification;
 use tetlux_optics::image_f32::{self, Image};
 use tetlux_optics::light_f32::LightUniform;
 use tetlux_optics::lit_f32::{Turning, integrate_lit};
+use tetlux_optics::lit_linear_f32::{Illuminated, one_field, two_fields};
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
 use tetlux_optics::two_field_f32;
 use tetlux_optics::vertex_f32;
@@ -203,11 +204,32 @@ impl Look {
     pub(crate) fn shade(&self, segment: &Segment) -> Integrated {
         match &self.light {
             None => self.classify(segment, 0.0, 1.0, 1.0),
-            Some((light, turning)) => {
-                let gradients = segment.gradients.map(|g| g.to_array());
-                let classified = |from, to, factor| self.classify(segment, from, to, factor);
-                integrate_lit(light, turning, gradients, segment.view, classified)
-            }
+            Some((light, turning)) => match &self.function {
+                Function::OneField(pieces, weights) => {
+                    let lit = self.illuminated(light, turning, segment);
+                    one_field(&lit, pieces, *weights, segment.front[0], segment.back[0])
+                }
+                Function::TwoFields([color, opacity]) => {
+                    let lit = self.illuminated(light, turning, segment);
+                    two_fields(&lit, color, opacity, segment.front, segment.back)
+                }
+                Function::Widgets(_) | Function::Image(_) => {
+                    let gradients = segment.gradients.map(|g| g.to_array());
+                    let classified = |from, to, factor| self.classify(segment, from, to, factor);
+                    integrate_lit(light, turning, gradients, segment.view, classified)
+                }
+            },
+        }
+    }
+
+    /// Of functions that are linear between nodes colour is exact: light may err by all that is allowed.
+    fn illuminated(&self, light: &LightUniform, turning: &Turning, segment: &Segment) -> Illuminated {
+        Illuminated {
+            light: *light,
+            eye: segment.view,
+            gradients: segment.gradients.map(|g| g.to_array()),
+            length: segment.length,
+            error: self.color_error + turning.error,
         }
     }
 

@@ -19,6 +19,7 @@
 //! ```
 
 mod camera;
+mod culling;
 mod document;
 mod emphasis;
 mod error;
@@ -33,6 +34,7 @@ mod reason;
 mod view;
 
 pub use camera::{Camera, Projection};
+pub use culling::CellBoxes;
 pub use emphasis::Emphasized;
 pub use error::SceneError;
 pub use file::{CameraSpec, FieldSpec, NodeRange, SceneFile, TransferSource, UnitDistance, gradient_magnitude};

@@ -13,7 +13,7 @@ use crate::look;
 use crate::one_peak::beyond_published;
 use crate::reason::{of_classification, of_integrator, of_interpolation, of_projection, of_table_precision, of_target};
 use crate::{
-    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError,
+    Backend, CellBoxes, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError,
     TablePrecision, Target, View,
 };
 
@@ -86,6 +86,30 @@ impl Plan {
     ///
     /// A camera that sees nothing, or a combination of backend, order and device that cannot be.
     pub fn new(scene: &Scene, mesh: &TetMesh, device: Option<&Device>) -> Result<Plan, SceneError> {
+        Plan::decide(scene, mesh, device, None)
+    }
+
+    /// The same for another function of the same two fields, whose ranges in the mesh's cells are kept: those of
+    /// [`Scene::scalar`] and [`Scene::second`]. Widgets alone take them.
+    ///
+    /// # Errors
+    ///
+    /// As [`Plan::new`].
+    pub fn with_boxes(
+        scene: &Scene,
+        mesh: &TetMesh,
+        device: Option<&Device>,
+        boxes: &CellBoxes,
+    ) -> Result<Plan, SceneError> {
+        Plan::decide(scene, mesh, device, Some(boxes))
+    }
+
+    fn decide(
+        scene: &Scene,
+        mesh: &TetMesh,
+        device: Option<&Device>,
+        boxes: Option<&CellBoxes>,
+    ) -> Result<Plan, SceneError> {
         let view = scene.camera.view(scene.size)?;
         let mut warnings = Vec::new();
         let method = method_of(scene)?;
@@ -112,7 +136,7 @@ impl Plan {
             warnings.push(format!("target {target}: {}", of_target(target)));
         }
         let colors = scene.emphasis.as_ref().map(|emphasis| emphasis.seen(mesh, &view));
-        let (cells, skips) = visible_cells(scene, mesh, &view, colors.as_deref());
+        let (cells, skips) = visible_cells(scene, mesh, &view, boxes, colors.as_deref());
         if skips.no_data > 0 {
             warnings.push(format!("{} cells have vertices without a finite value and are left out", skips.no_data));
         }
@@ -414,27 +438,68 @@ enum Fate {
     Outside,
 }
 
-fn visible_cells(scene: &Scene, mesh: &TetMesh, view: &View, colors: Option<&[[f64; 4]]>) -> (Vec<u32>, Skips) {
+/// Of each cell whether it has no data, or nothing of it can be seen; of `colors`, if any, in place of the classification.
+fn unseen(
+    scene: &Scene,
+    mesh: &TetMesh,
+    boxes: Option<&CellBoxes>,
+    colors: Option<&[[f64; 4]]>,
+) -> Vec<Option<Fate>> {
+    let ranges = || mesh.scalar_ranges(&scene.scalar);
+    let second = || scene.second.as_ref().map(|second| mesh.scalar_ranges(second));
+    let fate = |has_data: bool, visible: bool| match (has_data, visible) {
+        (false, _) => Some(Fate::NoData),
+        (true, false) => Some(Fate::Transparent),
+        (true, true) => None,
+    };
+    if let Widgets(function) = &scene.classification {
+        let made;
+        let boxes = match boxes {
+            Some(boxes) => boxes,
+            None => {
+                made = CellBoxes::new(&ranges(), &second().unwrap_or_default());
+                &made
+            }
+        };
+        let visible = boxes.visible(function);
+        return visible.into_iter().enumerate().map(|(cell, visible)| fate(boxes.has_data(cell), visible)).collect();
+    }
+    let (ranges, second) = (ranges(), second());
+    let of_cell = |index: usize| {
+        let range = Rectangle { s: ranges[index], g: second.as_ref().map_or([0.0; 2], |second| second[index]) };
+        let has_data = !range.s[0].is_nan() && !range.g[0].is_nan();
+        let visible = || match colors {
+            Some(colors) => {
+                let opaque = |&v: &u32| colors.get(v as usize).is_some_and(|color| color[3] > 0.0);
+                mesh.cells()[index].iter().any(opaque)
+            }
+            None => scene.classification.is_visible_over(&range),
+        };
+        fate(has_data, has_data && visible())
+    };
+    (0..ranges.len()).into_par_iter().map(of_cell).collect()
+}
+
+fn visible_cells(
+    scene: &Scene,
+    mesh: &TetMesh,
+    view: &View,
+    boxes: Option<&CellBoxes>,
+    colors: Option<&[[f64; 4]]>,
+) -> (Vec<u32>, Skips) {
     let offset = mesh.origin() - view.eye;
     let eye_space: Vec<DVec3> = mesh.points().par_iter().map(|p| view.rotate(p.as_dvec3() + offset)).collect();
     let frustum = view.frustum();
-    let ranges = mesh.scalar_ranges(&scene.scalar);
-    let second = scene.second.as_ref().map(|second| mesh.scalar_ranges(second));
-    let is_visible = |cell: &[u32; 4], range: &Rectangle| match colors {
-        Some(colors) => cell.iter().any(|&v| colors.get(v as usize).is_some_and(|color| color[3] > 0.0)),
-        None => scene.classification.is_visible_over(range),
-    };
+    let unseen = unseen(scene, mesh, boxes, colors);
     let fates: Vec<Fate> = mesh
         .cells()
         .par_iter()
         .enumerate()
         .map(|(index, cell)| {
             let p = cell.map(|v| eye_space[v as usize]);
-            let range = Rectangle { s: ranges[index], g: second.as_ref().map_or([0.0; 2], |second| second[index]) };
-            if range.s[0].is_nan() || range.g[0].is_nan() {
-                Fate::NoData
-            } else if !is_visible(cell, &range) {
-                Fate::Transparent
+            // Of widgets without a second field there is nothing.
+            if let Some(fate) = unseen.get(index).copied().unwrap_or(Some(Fate::NoData)) {
+                fate
             } else if frustum.iter().any(|&(n, c)| p.iter().all(|&q| n.dot(q) + c < 0.0)) {
                 Fate::Outside
             } else if is_flat(mesh, cell) {

@@ -7,7 +7,7 @@ use tetlux_scene::{NodeRange, SceneFile, UnitDistance};
 
 use super::Bench;
 use super::table::Table;
-use super::{kraus, moreland};
+use super::{kraus, moreland, song};
 use crate::input::{Input, SceneArgs, wing};
 use crate::testbed::meshes::{graded, log_radius};
 
@@ -22,6 +22,7 @@ pub(crate) const PAPERS: &[Paper] = &[
     ("moreland-fig9", moreland::sizes),
     ("kraus-1", kraus::enhancements),
     ("kraus-2", kraus::data_sets),
+    ("song-1", song::modes),
 ];
 
 /// A data set of the papers: its own file where it is at hand, else a mesh of as many cells.
@@ -44,12 +45,18 @@ pub(crate) const OXYGEN_POST: DataSet =
 pub(crate) const DELTA_WING: DataSet = DataSet { name: "Delta Wing", cells: 1_005_675, file: None, stand_in: wing };
 pub(crate) const HEAT_SINK: DataSet = DataSet { name: "heat sink", cells: 121_668, file: None, stand_in: heat_sink };
 pub(crate) const CYLINDER: DataSet = DataSet { name: "cylinder", cells: 624_960, file: None, stand_in: cylinder };
+pub(crate) const M6_WING: DataSet = DataSet { name: "M6 Wing", cells: 287_962, file: None, stand_in: wing };
 pub(crate) const X38: DataSet = DataSet { name: "X38", cells: 1_943_483, file: None, stand_in: x38 };
 
 /// Cells of every stand-in of a quick run.
 const QUICK_CELLS: usize = 6_000;
 
 impl DataSet {
+    /// The same as another paper has it, with another number of cells.
+    pub(crate) fn of_cells(self, cells: usize) -> DataSet {
+        DataSet { cells, ..self }
+    }
+
     /// The data set with nine control points, in a picture of that size, and what stands for it.
     pub(crate) fn input(&self, bench: &Bench, size: [u32; 2]) -> Result<(Input, &'static str)> {
         let found = self.file.and_then(|(stem, scene)| Some((bench.data.find(stem)?, scene)));

@@ -36,3 +36,20 @@ fn the_comparison_sees_a_planted_difference() {
         assert!(!holds(&rows) && rows.0.len() == 1 && rows.0[0].absolute > TOLERANCE, "{wrong}");
     }
 }
+
+#[test]
+fn waves_of_every_profile_occur_with_one_peak_and_with_several() {
+    let mut found = std::collections::BTreeSet::new();
+    for text in [include_str!("../fixtures/widget_triangle.json"), include_str!("../fixtures/widget_sine.json")] {
+        let file: Value = serde_json::from_str(text).expect("an extract is JSON");
+        for case in file["cases"].as_array().into_iter().flatten() {
+            let [front, back] = ["phase_f", "phase_b"].map(|end| case[end].as_f64().expect("a phase"));
+            // Peaks lie at the half-integers.
+            let peaks = (front.max(back) - 0.5).ceil() - (front.min(back) - 0.5).floor() - 1.0;
+            found.insert((case["profile"].as_str().expect("a profile").to_owned(), peaks > 1.0));
+        }
+    }
+    let all = ["abs_sine", "sine_squared", "triangle"].map(String::from);
+    let expected = all.into_iter().flat_map(|profile| [(profile.clone(), false), (profile, true)]);
+    assert_eq!(found, expected.collect());
+}
