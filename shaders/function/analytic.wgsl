@@ -11,11 +11,6 @@ import package::lib::widget_tables::{LARGEST, sample_gaussian, sample_sine, samp
 // A segment up to its second peak has four parts between kinks at most; f32 may add slivers.
 const MOST_PARTS = 6u;
 
-// There are no pieces.
-fn pieces_met(low: f32, high: f32) -> vec2<u32> {
-    return vec2<u32>(0u);
-}
-
 // Mean transmittance to the front of even extinction.
 fn even(depth: f32) -> f32 {
     if depth < 1e-6 {
@@ -122,6 +117,6 @@ fn analytic(front: vec2<f32>, back: vec2<f32>, length: f32) -> vec4<f32> {
 }
 
 // A segment with both scalars at its ends, of a length in device units.
-fn classified(range: vec2<u32>, front: vec2<f32>, back: vec2<f32>, length: f32) -> Integrated {
+fn classified(front: vec2<f32>, back: vec2<f32>, length: f32) -> Integrated {
     return Integrated(analytic(front, back, length), 1u);
 }

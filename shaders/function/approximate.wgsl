@@ -9,11 +9,6 @@ import package::axes::sample::{classify};
 // The table's largest extinction, with the length that is 1 in it.
 const MAX_EXTINCTION = 10.0;
 
-// Pieces are of segments.
-fn pieces_met(low: f32, high: f32) -> vec2<u32> {
-    return vec2<u32>(0u);
-}
-
 // (F, B) for the extinctions at the two ends and the length, in the table's unit.
 fn sample_front_back(alpha_f: f32, alpha_b: f32, length: f32) -> vec2<f32> {
     return interpolate_volume(vec3<f32>(alpha_f / MAX_EXTINCTION, alpha_b / MAX_EXTINCTION, length)).xy;
@@ -37,6 +32,6 @@ fn approximate(front: vec2<f32>, back: vec2<f32>, length: f32) -> vec4<f32> {
 }
 
 // A segment with both scalars at its ends, of a length in device units.
-fn classified(range: vec2<u32>, front: vec2<f32>, back: vec2<f32>, length: f32) -> Integrated {
+fn classified(front: vec2<f32>, back: vec2<f32>, length: f32) -> Integrated {
     return Integrated(approximate(front, back, length), look.pieces);
 }

@@ -3,12 +3,7 @@ import package::lib::integrated::{Integrated};
 import package::lib::look::{look};
 import package::lib::image::{integrate_counted};
 
-// There are no pieces.
-fn pieces_met(low: f32, high: f32) -> vec2<u32> {
-    return vec2<u32>(0u);
-}
-
 // A part of a segment with both scalars at its ends, of a length in device units.
-fn classified(range: vec2<u32>, front: vec2<f32>, back: vec2<f32>, length: f32) -> Integrated {
+fn classified(front: vec2<f32>, back: vec2<f32>, length: f32) -> Integrated {
     return integrate_counted(front, back, length, look.errors.x);
 }

@@ -2,8 +2,7 @@
 import package::lib::view::{view, ORTHOGRAPHIC};
 import package::lib::span::{Segment};
 import package::lib::spent::{count_pieces};
-import package::lib::lit::{integrate_lit};
-import package::axes::function::{pieces_met};
+import package::axes::lit::{pieces_met, integrate_lit};
 
 fn pieces_between(low: f32, high: f32, entry: u32) -> vec2<u32> {
     return pieces_met(low, high);

@@ -28,13 +28,14 @@ macro_rules! modules {
 /// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
 pub const MODULES: &[(&str, &str)] = modules! {
     lib {
-        balanced cell erf flat further gradients image integrated light lit look lookup mesh mesh_buffers one_field plane
+        balanced cell erf flat further gradients image integrated light lit_linear look lookup mesh mesh_buffers plane
         published ray segment silhouette span spent symmetric thick transfer two_fields view volume walk widget
         widget_tables widgets
     }
     data { cell point }
-    function { analytic approximate image one_field two_fields widgets }
+    function { analytic approximate image two_fields widgets }
     geometry { balanced ray thick vicp }
+    lit { one_field turns two_fields }
     interpolation { perspective screen_linear }
     output { dither plain straight }
     quantity { color lit pair scalar }
@@ -52,9 +53,10 @@ pub type Choice = (&'static str, &'static str);
 /// The module of every axis that a scene takes unless told otherwise.
 pub const DEFAULTS: &[Choice] = &[
     ("data", "data::point"),
-    ("function", "function::one_field"),
+    ("function", "function::widgets"),
     ("geometry", "geometry::ray"),
     ("interpolation", "interpolation::perspective"),
+    ("lit", "lit::turns"),
     ("output", "output::plain"),
     ("quantity", "quantity::scalar"),
     ("sample", "sample::widgets"),
@@ -254,13 +256,15 @@ mod tests {
                 ("quantity", "quantity::pair"),
                 ("shading", "shading::two_scalars"),
             ],
-            "shading::lit" | "quantity::lit" => &[("quantity", "quantity::lit"), ("shading", "shading::lit")],
+            "shading::lit" | "quantity::lit" | "lit::one_field" | "lit::turns" | "lit::two_fields" => {
+                &[("quantity", "quantity::lit"), ("shading", "shading::lit")]
+            }
             "function::analytic" | "function::approximate" | "sample::image" | "sample::widgets" => &[
                 ("function", "function::approximate"),
                 ("quantity", "quantity::pair"),
                 ("shading", "shading::two_scalars"),
             ],
-            "function::image" | "function::one_field" | "function::two_fields" | "function::widgets" => {
+            "function::image" | "function::two_fields" | "function::widgets" => {
                 &[("quantity", "quantity::lit"), ("shading", "shading::lit")]
             }
             _ => &[],

@@ -5,17 +5,18 @@ use tetlux_optics::erf_f32::{erf, erfc, gaussian_mean};
 use tetlux_optics::image_f32::{self, Image};
 use tetlux_optics::light_f32::{LightUniform, half_way, lit, normal, silhouette_factor};
 use tetlux_optics::lit_f32::{Turning, integrate_lit};
-use tetlux_optics::transfer_f32::{self, Piece, Weights};
+use tetlux_optics::lit_linear_f32::{Illuminated, one_field, two_fields};
+use tetlux_optics::transfer_f32::{self, Weights};
 use tetlux_optics::widget::{BivariateFunction, Rectangle, Shape, WaveProfile, Widget};
 use tetlux_optics::widget_f32::{self, kinks, next_kink, track, track_depth, track_rate, track_slopes};
 use tetlux_optics::widget_integral::{RaySegment, bivariate_segment};
 use tetlux_optics::widgets_f32::{Integrated, integrate_share};
-use tetlux_optics::{EmissionConvention, ImageFunction, Light, two_field_f32};
+use tetlux_optics::{EmissionConvention, ImageFunction, Light, TransferFunction, two_field_f32};
 use tetlux_shaders::{DEFAULTS, choose, compose};
 use tetlux_tests::{Random, transfer};
 
 use crate::device::{Bound, run};
-use crate::functions::{bytes, random_pieces};
+use crate::functions::bytes;
 
 /// A driver's exp, sin and log are a few units of the last place off, and of results that are sums of dozens of them the
 /// roundings add up.
@@ -324,21 +325,25 @@ fn segments_through_images() {
     }
 }
 
+/// Seven nodes of colour, and seven of opacity up to 20.
+fn random_transfer(random: &mut Random) -> TransferFunction {
+    let mut heights = |most: f64| -> Vec<[f64; 2]> {
+        let mut places: Vec<f64> = (0..7).map(|_| random.between(-0.2, 1.2)).collect();
+        places.sort_by(f64::total_cmp);
+        places.into_iter().map(|s| [s, random.between(0.0, most)]).collect()
+    };
+    let color: Vec<[f64; 4]> = heights(1.0).iter().map(|&[s, h]| [s, h, 1.0 - h, 0.5 * h]).collect();
+    transfer(&color, &heights(20.0))
+}
+
 #[test]
 fn segments_of_two_fields() {
     let mut random = Random::new(25);
     let rows = 4000;
     let body = format!("let r = Integrated(integrate(vec2<f32>(x[0], x[1]), vec2<f32>(x[2], x[3]), x[4]), 1u);{PUT}");
-    let source = compose("function::two_fields", &choose(DEFAULTS, &[("function", "function::two_fields")])).unwrap()
-        + &main_of(5, 5, &body);
+    let source = compose("function::two_fields", DEFAULTS).unwrap() + &main_of(5, 5, &body);
     for _ in 0..6 {
-        let mut heights = |most: f64| -> Vec<[f64; 2]> {
-            let mut places: Vec<f64> = (0..7).map(|_| random.between(-0.2, 1.2)).collect();
-            places.sort_by(f64::total_cmp);
-            places.into_iter().map(|s| [s, random.between(0.0, most)]).collect()
-        };
-        let color: Vec<[f64; 4]> = heights(1.0).iter().map(|&[s, h]| [s, h, 1.0 - h, 0.5 * h]).collect();
-        let function = transfer(&color, &heights(20.0));
+        let function = random_transfer(&mut random);
         let [color, opacity] = two_field_f32::axes(&function, UNIT, 1.0);
         let inputs: Vec<f32> = (0..rows).flat_map(|_| random_segment(&mut random)).collect();
         let look = LookBytes { color_pieces: color.len() as u32, ..LookBytes::none() }.bytes();
@@ -364,10 +369,6 @@ fn random_gradient(random: &mut Random) -> [f32; 3] {
     [0; 3].map(|_| (random.between(-1.0, 1.0) * scale) as f32)
 }
 
-fn unit(v: [f32; 3]) -> [f32; 3] {
-    normal(v)
-}
-
 #[test]
 fn light_of_points() {
     let mut random = Random::new(26);
@@ -384,7 +385,7 @@ fn light_of_points() {
         let light = LightUniform::new(&random_light(&mut random), |d| d);
         let inputs: Vec<f32> = (0..rows)
             .flat_map(|_| {
-                let eye = unit(random_gradient(&mut random));
+                let eye = normal(random_gradient(&mut random));
                 let color = [0; 3].map(|_| random.between(0.0, 1.0) as f32);
                 [random_gradient(&mut random), eye, color].concat()
             })
@@ -403,52 +404,95 @@ fn light_of_points() {
     }
 }
 
+/// A mat2x4 of both scalars and the gradient at either end, of a row of 14: both scalars at the front and at the back, the
+/// length, the gradients, the unit vector to the eye.
+const LIT: &str = "
+    let front = mat2x4<f32>(vec4<f32>(x[0], x[1], 0.0, 0.0), vec4<f32>(x[5], x[6], x[7], 0.0));
+    let back = mat2x4<f32>(vec4<f32>(x[2], x[3], 0.0, 0.0), vec4<f32>(x[8], x[9], x[10], 0.0));
+    let r = integrate_lit(vec2<u32>(0u, RANGE), front, back, x[4], vec3<f32>(x[11], x[12], x[13]));";
+
+fn lit_rows(random: &mut Random, rows: usize) -> Vec<f32> {
+    (0..rows)
+        .flat_map(|_| {
+            let segment = random_segment(random);
+            let front = random_gradient(random);
+            // Half of them turn as little as they do within a cell.
+            let turned = random_gradient(random);
+            let back = if random.below(2) == 0 { turned } else { [0, 1, 2].map(|k| front[k] + 0.1 * turned[k]) };
+            let eye = normal([0; 3].map(|_| random.between(-1.0, 1.0) as f32));
+            [&segment[..], &front, &back, &eye].concat()
+        })
+        .collect()
+}
+
+fn vectors(row: &[f32]) -> ([[f32; 3]; 2], [f32; 3]) {
+    let [front, back, eye] = [5, 8, 11].map(|k| [row[k], row[k + 1], row[k + 2]]);
+    ([front, back], eye)
+}
+
 #[test]
-fn lit_segments() {
+fn lit_segments_of_any_function() {
     let mut random = Random::new(27);
     let rows = 4000;
-    let body = format!(
-        "let front = mat2x4<f32>(vec4<f32>(x[0], x[1], 0.0, 0.0), vec4<f32>(x[5], x[6], x[7], 0.0));
-    let back = mat2x4<f32>(vec4<f32>(x[2], x[3], 0.0, 0.0), vec4<f32>(x[8], x[9], x[10], 0.0));
-    let range = vec2<u32>(0u, arrayLength(&pieces) - 1u);
-    let r = integrate_lit(range, front, back, x[4], vec3<f32>(x[11], x[12], x[13]));{PUT}"
-    );
-    let source = compose("lib::lit", DEFAULTS).unwrap() + &main_of(14, 5, &body);
+    let choices = choose(DEFAULTS, &[("function", "function::two_fields")]);
+    let source = compose("lit::turns", &choices).unwrap() + &main_of(14, 5, &(LIT.replace("RANGE", "0u") + PUT));
     for error in [1e-2f32, 1e-3, 1e-4] {
-        for _ in 0..2 {
-            let pieces: Vec<Piece> = random_pieces(&mut random);
-            let model = random_light(&mut random);
-            let light = LightUniform::new(&model, |d| d);
-            let turning = Turning::new(&model, 2.0, error);
-            let inputs: Vec<f32> = (0..rows)
-                .flat_map(|_| {
-                    let segment = random_segment(&mut random);
-                    let front = random_gradient(&mut random);
-                    // Half of them turn as little as they do within a cell.
-                    let turned = random_gradient(&mut random);
-                    let back =
-                        if random.below(2) == 0 { turned } else { [0, 1, 2].map(|k| front[k] + 0.1 * turned[k]) };
-                    let eye = unit([0; 3].map(|_| random.between(-1.0, 1.0) as f32));
-                    [&segment[..], &front, &back, &eye].concat()
-                })
-                .collect();
-            let look = LookBytes { light, turning, ..LookBytes::none() }.bytes();
-            let bound = [Bound::Uniform(0, 10, &look), Bound::Storage(0, 1, &bytes(&pieces))];
-            let found = run(&source, &bound, &inputs, rows, 5);
-            let twin = |row: &[f32]| {
-                let [front, back, eye] = [5, 8, 11].map(|k| [row[k], row[k + 1], row[k + 2]]);
-                let classified = |from: f32, to: f32, factor: f32| {
-                    let at = |u: f32| row[0] + (row[2] - row[0]) * u;
-                    let range = [0, pieces.len() - 1];
-                    let length = row[4] * (to - from) * factor;
-                    let color = transfer_f32::integrate(&pieces, range, Weights::Direct, at(from), at(to), length);
-                    Integrated { color, pieces: 1 }
-                };
-                integrate_lit(&light, &turning, [front, back], eye, classified)
+        let function = random_transfer(&mut random);
+        let [color, opacity] = two_field_f32::axes(&function, UNIT, 1.0);
+        let model = random_light(&mut random);
+        let light = LightUniform::new(&model, |d| d);
+        let turning = Turning::new(&model, 2.0, error);
+        let inputs = lit_rows(&mut random, rows);
+        let look = LookBytes { light, turning, color_pieces: color.len() as u32, ..LookBytes::none() }.bytes();
+        let pieces = bytes(&[color.clone(), opacity.clone()].concat());
+        let found = run(&source, &[Bound::Uniform(0, 10, &look), Bound::Storage(0, 1, &pieces)], &inputs, rows, 5);
+        let twin = |row: &[f32]| {
+            let (gradients, eye) = vectors(row);
+            let classified = |from: f32, to: f32, factor: f32| {
+                let at = |u: f32| [0, 1].map(|k| row[k] + (row[2 + k] - row[k]) * u);
+                let length = row[4] * (to - from) * factor;
+                let color = two_field_f32::integrate(&color, &opacity, at(from), at(to), length);
+                Integrated { color, pieces: 1 }
             };
-            // The light of two cuts by the same error is within twice that of each other, of luminances up to 2.
-            assert_eq!(difference(&inputs, 14, &found, twin, 2.0 * error), None);
-        }
+            integrate_lit(&light, &turning, gradients, eye, classified)
+        };
+        // The light of two cuts by the same error is within twice that of each other, of luminances up to 2.
+        assert_eq!(difference(&inputs, 14, &found, twin, 2.0 * error), None);
+    }
+}
+
+#[test]
+fn lit_segments_that_are_linear_between_nodes() {
+    let mut random = Random::new(29);
+    let rows = 4000;
+    let [one, two] = ["lit::one_field", "lit::two_fields"].map(|module| {
+        let main = main_of(14, 5, &(LIT.replace("RANGE", "arrayLength(&pieces) - 1u") + PUT));
+        compose(module, DEFAULTS).unwrap() + &main
+    });
+    for error in [1e-2f32, 1e-3, 1e-4] {
+        let function = random_transfer(&mut random);
+        let light = LightUniform::new(&random_light(&mut random), |d| d);
+        let inputs = lit_rows(&mut random, rows);
+        let illuminated = |row: &[f32]| {
+            let (gradients, eye) = vectors(row);
+            Illuminated { light, eye, gradients, length: row[4], error }
+        };
+        let turning = Turning { error, ..Turning::default() };
+        let look = LookBytes { light, turning, ..LookBytes::none() };
+        let pieces = transfer_f32::pieces(&function, UNIT[0], 1.0);
+        let (uniform, buffer) = (look.bytes(), bytes(&pieces));
+        let found = run(&one, &[Bound::Uniform(0, 10, &uniform), Bound::Storage(0, 1, &buffer)], &inputs, rows, 5);
+        let twin = |row: &[f32]| one_field(&illuminated(row), &pieces, Weights::Direct, row[0], row[2]);
+        assert_eq!(difference(&inputs, 14, &found, twin, 2.0 * error), None);
+        let [color, opacity] = two_field_f32::axes(&function, UNIT, 1.0);
+        let uniform = LookBytes { color_pieces: color.len() as u32, ..look }.bytes();
+        let buffer = bytes(&[color.clone(), opacity.clone()].concat());
+        let found = run(&two, &[Bound::Uniform(0, 10, &uniform), Bound::Storage(0, 1, &buffer)], &inputs, rows, 5);
+        let twin = |row: &[f32]| {
+            let (front, back, _) = ends(row);
+            two_fields(&illuminated(row), &color, &opacity, front, back)
+        };
+        assert_eq!(difference(&inputs, 14, &found, twin, 2.0 * error), None);
     }
 }
 

@@ -114,7 +114,7 @@ impl<'a> Maker<'a> {
 /// The bind group of the tables, made.
 fn tables(make: &Maker, queue: &wgpu::Queue, layout: &wgpu::BindGroupLayout, job: &Job) -> wgpu::BindGroup {
     let mut lookup = Lookup { low: [[0.0; 4]; 2], range: [[1.0; 4]; 2], length: [job.table_length, 0.0, 0.0, 0.0] };
-    let mut view = |binding, (texture, bytes): (wgpu::Texture, u64)| {
+    let view = |binding, (texture, bytes): (wgpu::Texture, u64)| {
         make.count(0, 1, bytes);
         (binding, texture.create_view(&wgpu::TextureViewDescriptor::default()))
     };

@@ -49,14 +49,19 @@ impl LookVariant {
     }
 
     /// The modules that stand for the axes of the shaders.
-    pub(crate) fn choices(&self) -> [Choice; 5] {
+    pub(crate) fn choices(&self) -> [Choice; 6] {
         let function = match self.function {
-            Classified::OneField => "function::one_field",
             Classified::TwoFields => "function::two_fields",
-            Classified::Widgets => "function::widgets",
+            // One field is lit, and light knows its pieces.
+            Classified::OneField | Classified::Widgets => "function::widgets",
             Classified::Image => "function::image",
             Classified::Analytic => "function::analytic",
             Classified::ApproximateWidgets | Classified::ApproximateImage => "function::approximate",
+        };
+        let lit = match self.function {
+            Classified::OneField => "lit::one_field",
+            Classified::TwoFields => "lit::two_fields",
+            _ => "lit::turns",
         };
         let sample = match self.function {
             Classified::ApproximateImage => "sample::image",
@@ -69,7 +74,14 @@ impl LookVariant {
             (_, false) => "second::point",
             (_, true) => "second::cell",
         };
-        [("function", function), ("quantity", quantity), ("sample", sample), ("second", second), ("shading", shading)]
+        [
+            ("function", function),
+            ("lit", lit),
+            ("quantity", quantity),
+            ("sample", sample),
+            ("second", second),
+            ("shading", shading),
+        ]
     }
 
     fn has_widgets(&self) -> bool {

@@ -373,7 +373,7 @@ mod tests {
     }
 
     /// What no scene of one field without light may hold.
-    const OF_LOOKS: [&str; 17] = [
+    const OF_LOOKS: [&str; 18] = [
         "function::",
         "lib::erf",
         "lib::further",
@@ -381,11 +381,12 @@ mod tests {
         "lib::image",
         "lib::integrated",
         "lib::light",
-        "lib::lit",
+        "lib::lit_linear",
         "lib::look\n",
         "lib::spent",
         "lib::two_fields",
         "lib::widget",
+        "lit::",
         "quantity::lit",
         "quantity::pair",
         "sample::",

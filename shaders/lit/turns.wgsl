@@ -1,5 +1,5 @@
-// A segment lit by the gradient: its light is held on pieces over which the normal turns by the same angle. How many, and
-// what that bounds: the twins of the same names in Rust, tetlux-optics, lit_f32.
+// Light on any function: it is held on pieces over which the normal turns by the same angle. How many, and what that bounds:
+// the twins of the same names in Rust, tetlux-optics, lit_f32.
 import package::lib::segment::{weights_direct};
 import package::lib::integrated::{Integrated};
 import package::lib::look::{look};
@@ -8,6 +8,11 @@ import package::axes::function::{classified};
 
 // A segment's light is held on no more pieces than this.
 const MOST_TURNS = 256.0;
+
+// Pieces are of segments.
+fn pieces_met(low: f32, high: f32) -> vec2<u32> {
+    return vec2<u32>(0u);
+}
 
 // In how many pieces the light of a segment is held over which the normal turns by an angle.
 fn turns_of(angle: f32) -> f32 {
@@ -52,7 +57,7 @@ fn integrate_lit(
     let angle = angle_between(g_front, back[1].xyz);
     let count = turns_of(angle);
     if count > 1.0 {
-        let whole = classified(range, s_front, back[0].xy, length_of_all);
+        let whole = classified(s_front, back[0].xy, length_of_all);
         if whole.color.w <= 0.0 {
             // Nothing is seen: there is nothing to light.
             return whole;
@@ -79,7 +84,6 @@ fn integrate_lit(
             factor = (first + 4.0 * middle + last) / 6.0;
         }
         let part = classified(
-            range,
             s_front + s_rise * begin,
             s_front + s_rise * end,
             length_of_all * (end - begin) * factor,
