@@ -26,7 +26,7 @@ impl TetMesh {
     /// gradients there ([`vertex_gradients`](Self::vertex_gradients)): that of |g|, so that
     ///
     /// ```text
-    /// s'' = grad |g| . g / |g|                     (Kindlmann and Durkin 1998, section 4.3)
+    /// s'' = grad |g| . g / |g|                     (Kindlmann and Durkin 1998)
     /// ```
     ///
     /// Finite everywhere: 0 where there is no gradient, or none of a cell with data. Exact inside the mesh where the

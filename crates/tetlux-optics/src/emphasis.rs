@@ -5,10 +5,10 @@
 //! and 0 from w on:
 //!
 //! ```text
-//! gradient     ((|g| - low) / (high - low))^power, clamped                       (Levoy 1988, after equation 4)
-//! contour      t((value - s) / |g|, width)                                       (Levoy 1988, equation 3)
-//! boundary     t(p, width),  p = -sigma^2 s'' / max(|g| - threshold, 0)          (Kindlmann and Durkin 1998, section 5)
-//! silhouette   (1 - |g.v| / |g|)^power                                           (Ebert and Rheingans 2000, section 3.2)
+//! gradient     ((|g| - low) / (high - low))^power, clamped                       (Levoy 1988, region boundaries)
+//! contour      t((value - s) / |g|, width)                                       (Levoy 1988, isovalue contours)
+//! boundary     t(p, width),  p = -sigma^2 s'' / max(|g| - threshold, 0)          (Kindlmann and Durkin 1998)
+//! silhouette   (1 - |g.v| / |g|)^power                                           (Ebert and Rheingans 2000)
 //! ```
 //!
 //! (value - s) / |g| is about the distance to the contour, and p that to the middle of a boundary that is a step blurred by
@@ -55,7 +55,7 @@ pub struct Contour {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boundary {
     /// Standard deviation of the blur in world length, above 0; none: that of an ideal boundary whose first and second
-    /// derivative are as large as the field's at most (Kindlmann and Durkin 1998, equation 5).
+    /// derivative are as large as the field's at most (Kindlmann and Durkin 1998).
     pub sigma: Option<f64>,
     /// World length from the middle at which nothing is left, above 0; none: sigma.
     pub width: Option<f64>,

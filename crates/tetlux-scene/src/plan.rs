@@ -157,7 +157,10 @@ impl Plan {
             reasons.push(("table", says(table_precision, of_table_precision)));
         }
         if backend == Backend::Gpu || decided.classification == Classification::Vertex {
-            reasons.push(("classification", says(decided.classification, of_classification)));
+            let why = |c| {
+                if colors.is_some() { "luminance and extinction linear in each cell" } else { of_classification(c) }
+            };
+            reasons.push(("classification", format!("{}: {}", decided.classification, why(decided.classification))));
         }
         reasons.extend(scene.emphasis.as_ref().map(|emphasis| ("emphasis", emphasis.emphasis().to_string())));
         if backend == Backend::Gpu {
