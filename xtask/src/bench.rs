@@ -69,7 +69,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<[u32; 2]>,
     /// Timed frames of each way, in turn with the others; of what takes longer than 5 s a single one
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     runs: u16,
     /// Small meshes and pictures, a frame each: whether it all works
     #[arg(long)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use tetlux_image::{Image, Metrics, compare};
-use tetlux_scene::{Backend, CellProjection, Integrator, Interpolation, Method, Order, Plan, TablePrecision, Target};
+use tetlux_scene::{Backend, CellProjection, Integrator, Interpolation, Order, Plan, TablePrecision, Target};
 
 use super::Bench;
 use super::front::front;
@@ -233,9 +233,10 @@ fn colors(image: &Image) -> Image {
     image
 }
 
-/// Whether every way can be; for the tests.
 #[cfg(test)]
 mod tests {
+    use tetlux_scene::Method;
+
     use super::*;
 
     #[test]
