@@ -58,6 +58,9 @@ faster and of less largest error. `share of` is our processor time over the peer
 process while it drew its first frame, device what buffers and textures took.
 ";
 
+/// Milliseconds; stages that take less are not told.
+const LEAST: f64 = 0.05;
+
 impl Page {
     fn section(&mut self, title: &str, text: &str) {
         // Writing to a string does not fail.
@@ -98,18 +101,19 @@ impl Page {
                 milliseconds(cost.wall_seconds),
                 cost.cpu_seconds.map_or("-".into(), milliseconds),
             ];
-            let share = |rival: &&Entry| match entry.rival {
+            let of_rival = |rival: &&Entry| match entry.rival {
                 Some(_) => "-".to_owned(),
-                None => format!("1/{}", number(rival.cost.seconds() / cost.seconds())),
+                None => share(cost.seconds() / rival.cost.seconds()),
             };
-            row.extend(rivals.iter().map(share));
+            row.extend(rivals.iter().map(of_rival));
             row.extend([mib(entry.peak_bytes), mib(entry.device_bytes)]);
             row
         });
         let _ = write!(self.markdown, "\n{}", markdown(&head, rows));
         let stages = race.entries.iter().filter(|entry| !entry.cost.stages.is_empty()).map(|entry| {
+            let stages = entry.cost.stages.iter().map(|stage| (stage.name, entry.cost.stage(stage.name) * 1e3));
             let stages =
-                entry.cost.stages.iter().map(|s| format!("{} {}", s.name, number(entry.cost.stage(s.name) * 1e3)));
+                stages.filter(|(_, took)| *took >= LEAST).map(|(name, took)| format!("{name} {}", number(took)));
             vec![entry.name.clone(), entry.method.clone(), stages.collect::<Vec<_>>().join(", ")]
         });
         let _ = write!(self.markdown, "\n{}", markdown(&["way", "what it is", "stages, CPU ms"], stages));
@@ -176,6 +180,11 @@ impl Page {
         let table = markdown(&head(&["picture"]), rows);
         let _ = write!(self.markdown, "\n{table}");
     }
+}
+
+/// A share, as a fraction if it is one.
+fn share(of: f64) -> String {
+    if of <= 1.0 { format!("1/{}", number(1.0 / of)) } else { number(of) }
 }
 
 fn race_plot(race: &Race) -> String {

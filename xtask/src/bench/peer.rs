@@ -68,12 +68,11 @@ pub(crate) struct Took {
 }
 
 impl Peer {
-    /// Writes the job to a folder and starts the program on it.
-    pub(crate) fn start(python: &str, folder: &Path, input: &Input) -> Result<Peer> {
-        let job = write_job(folder, input)?;
-        let said = folder.join("stderr.txt");
+    /// Starts the program on a job.
+    pub(crate) fn start(python: &str, job: &Path) -> Result<Peer> {
+        let said = job.with_file_name("stderr.txt");
         let mut child = Command::new(python)
-            .args([Path::new(SCRIPT), &job, Path::new("--serve")])
+            .args([Path::new(SCRIPT), job, Path::new("--serve")])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(File::create(&said)?)
@@ -116,8 +115,8 @@ impl Drop for Peer {
     }
 }
 
-/// Writes the mesh and the job that names it; gives the job's path.
-fn write_job(folder: &Path, input: &Input) -> Result<PathBuf> {
+/// Writes the mesh and the job that names it; gives the job's path. What the peer cannot draw is an error.
+pub(crate) fn write_job(folder: &Path, input: &Input) -> Result<PathBuf> {
     let scene = &input.scene;
     let Some(transfer) = scene.transfer().filter(|_| scene.lighting.is_none()) else {
         bail!("{}: a peer draws transfer functions of one field without light", input.name);
@@ -264,7 +263,8 @@ mod tests {
     fn a_peer_that_cannot_be_says_so() {
         let folder = tempfile::tempdir().unwrap();
         let input = PEAK.input("peak", "", 8).unwrap();
-        let error = |python: &str| Peer::start(python, folder.path(), &input).err().unwrap().to_string();
+        let job = write_job(folder.path(), &input).unwrap();
+        let error = |python: &str| Peer::start(python, &job).err().unwrap().to_string();
         assert!(error("no-such-python-anywhere").contains("--python"));
         #[cfg(unix)]
         assert!(error("true").contains("the peer ended"), "a program that answers nothing");

@@ -11,7 +11,7 @@ use super::Bench;
 use super::front::front;
 use super::measure::{Cost, Course, LONG, Runner, TURN, Way, median};
 use super::memory;
-use super::peer::{About, Peer, Rival, Took, VTK, read_ppm};
+use super::peer::{About, Peer, Rival, Took, VTK, read_ppm, write_job};
 use crate::input::Input;
 use crate::{progress, truth};
 
@@ -101,10 +101,14 @@ pub(crate) fn race(bench: &Bench, input: &Input, python: Option<&str>, folder: &
             Err(error) => refused.push([way.0.to_owned(), error.to_string()]),
         }
     }
-    let mut theirs = match python {
-        Some(python) => Some(Rivals::start(python, &folder.join(&input.name), input, &truth, &mut refused)?),
-        None => None,
-    };
+    let mut theirs = None;
+    if let Some(python) = python {
+        let folder = folder.join(&input.name);
+        match write_job(&folder, input) {
+            Ok(job) => theirs = Some(Rivals::start(Peer::start(python, &job)?, &folder, input, &truth, &mut refused)?),
+            Err(error) => refused.push(["the peer".to_owned(), error.to_string()]),
+        }
+    }
     for round in 0..bench.runs {
         for (runner, ..) in ours.iter_mut().filter(|(runner, ..)| round == 0 || !runner.is_long()) {
             course.run(runner)?;
@@ -165,13 +169,12 @@ struct Rivals {
 
 impl Rivals {
     fn start(
-        python: &str,
+        mut peer: Peer,
         folder: &Path,
         input: &Input,
         truth: &Image,
         refused: &mut Vec<[String; 2]>,
     ) -> Result<Rivals> {
-        let mut peer = Peer::start(python, folder, input)?;
         let view = input.scene.camera.view(input.scene.size)?;
         let mut started = Vec::new();
         let mut truths: Vec<([f64; 2], Image)> = vec![([0.0; 2], colors(truth))];
@@ -196,7 +199,7 @@ impl Rivals {
 
     fn run(&mut self, round: usize) -> Result<()> {
         for (rival, _, _, samples) in &mut self.started {
-            if round > 0 && samples.first().is_some_and(|took| took.wall_seconds > LONG) {
+            if round > 0 && samples.first().is_some_and(|took| took.cpu_seconds > LONG) {
                 continue;
             }
             self.frames += 1;

@@ -151,7 +151,7 @@ fn grown(bench: &Bench, course: &mut Course, ways: &mut Vec<Way>) -> Result<Vec<
         let peak_bytes = memory::peak();
         course.run_in_turn(std::slice::from_mut(&mut runner), bench.runs)?;
         let cost = runner.cost();
-        if cost.wall_seconds < LONG {
+        if cost.seconds() < LONG {
             left.push(way);
         }
         all.push(Grown { name: way.0, cost, device_bytes: frame.resources.bytes, peak_bytes });
@@ -175,8 +175,7 @@ fn built_in(mesh: TetMesh, size: [u32; 2]) -> Result<Input> {
 fn million(bench: &Bench) -> Result<Million> {
     let setting = if bench.quick { Setting { mesh: cube::<8>, ..BOX } } else { BOX };
     let input = setting.input("box", "a box of a million cells", if bench.quick { 48 } else { 800 })?;
-    let (cost, _, frame) =
-        Course::new(&input, bench.renderer).cost(("CPU", |m| m.backend = Backend::Cpu), bench.runs)?;
+    let (cost, frame) = Course::new(&input, bench.renderer).costs([WAYS[0]], bench.runs)?.remove(0);
     let pixels = frame.image.pixels();
     let covered = pixels.iter().filter(|pixel| pixel[3] > 0.0).count() as f64 / pixels.len() as f64;
     Ok(Million { cells: input.mesh.cells().len(), size: input.scene.size, covered, cost })
