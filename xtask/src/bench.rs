@@ -94,6 +94,8 @@ pub(crate) struct Bench<'a> {
 /// Everything that was found.
 #[derive(Serialize)]
 pub(crate) struct Results {
+    /// Small meshes and pictures.
+    quick: bool,
     machine: Machine,
     races: Vec<Race>,
     scaling: Option<Scaling>,
@@ -178,6 +180,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         size: args.size,
     };
     let mut results = Results {
+        quick: args.quick,
         machine: Machine::new(&renderer),
         races: Vec::new(),
         scaling: None,

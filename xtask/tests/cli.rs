@@ -521,7 +521,9 @@ fn a_quick_bench_states_time_error_growth_and_targets() {
     assert_eq!(found["scaling"]["cells"].as_array().unwrap().len(), 2);
     assert!(found["targets"].as_array().unwrap().len() > 20);
     let page = fs::read_to_string(made.join("benchmarks.md")).unwrap();
-    for part in ["## Machine", "| default", "## Targets", "not measured", "benchmarks/peak.svg", "## Growth"] {
+    for part in
+        ["**A quick run**", "## Machine", "| default", "## Targets", "not measured", "benchmarks/peak.svg", "## Growth"]
+    {
         assert!(page.contains(part), "\"{part}\" is not in:\n{page}");
     }
     for plot in ["peak", "growth-cells", "growth-pixels", "growth-memory"] {
@@ -534,8 +536,8 @@ fn a_quick_bench_states_time_error_growth_and_targets() {
 #[test]
 fn a_paper_is_measured_by_name() {
     let folder = tempfile::tempdir().unwrap();
-    let args = ["bench", "--quick", "--paper", "moreland-1", "--paper", "moreland-fig5", "--output", "made"];
-    let output = run(folder.path(), &args);
+    let args = "bench --quick --paper moreland-1 --paper moreland-3 --paper moreland-fig5 --output made";
+    let output = run(folder.path(), &args.split(' ').collect::<Vec<_>>());
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stdout(&output).contains("249278"), "theirs is beside ours: {}", stdout(&output));
     let table = json(&folder.path().join("made/paper-moreland-1.json"));
@@ -543,6 +545,11 @@ fn a_paper_is_measured_by_name() {
         let [before, after] = [4, 5].map(|column| row[column].as_f64().unwrap());
         assert!(0.0 < before && before < after, "adaptive sampling draws more: {row}");
     }
+    let rates = json(&folder.path().join("made/paper-moreland-3.json"));
+    let rates = rates["rows"].as_array().unwrap();
+    // Three integrators, and two ways of ours that the paper does not have, on three meshes.
+    assert_eq!(rates.iter().filter(|row| row[2].is_null()).count(), 6);
+    assert!(rates.len() == 15 && rates.iter().all(|row| row[4].as_f64().unwrap() > 0.0), "{rates:?}");
     // Shares of cells, the least first.
     for row in json(&folder.path().join("made/paper-moreland-fig5.json"))["rows"].as_array().unwrap() {
         let [mean, least, most] = [3, 4, 6].map(|column| row[column].as_f64().unwrap());

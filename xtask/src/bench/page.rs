@@ -26,8 +26,15 @@ is found once a mesh; the eye moves a little from frame to frame. CPU is user an
 machine compare that, and ratios of one run.
 ";
 
+const QUICK: &str = "
+**A quick run**: meshes and pictures are small, a frame of each. It shows that everything works; its figures say little.
+";
+
 pub(crate) fn page(results: &Results, folder: &str) -> Page {
     let mut page = Page { markdown: String::from(HEAD), plots: Vec::new() };
+    if results.quick {
+        page.markdown += QUICK;
+    }
     let peer = results.races.iter().find_map(|race| race.peer.clone());
     let peer = peer.map(|about| [["VTK".to_owned(), about.version], ["OpenGL of VTK".to_owned(), about.opengl]]);
     let rows = results.machine.rows().into_iter().chain(peer.into_iter().flatten());
@@ -151,7 +158,7 @@ impl Page {
         let peak = |way: &Grown| way.peak_bytes.map(|bytes| bytes as f64 / f64::from(1 << 20));
         let mut memory = curves(&mut scaling.cells.iter().map(|point| (cells(point), &point.ways)), peak);
         memory.iter_mut().for_each(|curve| curve.name += ", peak of the process");
-        let mesh = scaling.cells.iter().map(|point| [cells(point), point.mesh_bytes.unwrap_or(0) as f64 * mib]);
+        let mesh = scaling.cells.iter().map(|point| [cells(point), point.mesh_bytes as f64 * mib]);
         memory.push(Curve { name: "the mesh".into(), points: mesh.collect(), style: Style::Line });
         for (name, alt, labels, curves) in [
             ("growth-cells", "time against cells", ["cells", "processor seconds a frame"], &in_cells),
@@ -171,7 +178,7 @@ impl Page {
             first.iter().map(|name| (*name).to_owned()).chain(ways).collect()
         };
         let rows = scaling.cells.iter().map(|point| {
-            let bytes = point.mesh_bytes.map_or("-".into(), |bytes| number((bytes as f64 / cells(point)).round()));
+            let bytes = number((point.mesh_bytes as f64 / cells(point)).round());
             [vec![point.cells.to_string(), number(point.assemble_wall_seconds * 1e3), bytes], of(&point.ways)].concat()
         });
         let table = markdown(&head(&["cells", "mesh ready, wall ms", "mesh, bytes a cell"]), rows);
