@@ -35,6 +35,7 @@ pub const MODULES: &[(&str, &str)] = modules! {
     quantity { color scalar }
     shading { post_clip post_exact preint preint_log preint_q vertex }
     source { computed stored }
+    surface { none opaque }
     weights { average direct linear psi q symmetric }
     stages { balance decompose draw group march project }
 };
@@ -51,6 +52,7 @@ pub const DEFAULTS: &[Choice] = &[
     ("quantity", "quantity::scalar"),
     ("shading", "shading::post_exact"),
     ("source", "source::stored"),
+    ("surface", "surface::none"),
     ("weights", "weights::direct"),
 ];
 

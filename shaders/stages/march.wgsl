@@ -10,6 +10,7 @@ import package::lib::walk::{Ray, Corner, ray_through, offset_from, turns, area, 
 import package::axes::data::{CELLWISE, scalar_of};
 import package::axes::quantity::{Quantity, quantity_of};
 import package::axes::shading::{pieces_between, shade};
+import package::axes::surface::{cut, is_hidden};
 
 struct March {
     // A pixel of this alpha is done.
@@ -91,6 +92,9 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
             c = other;
         }
         var front = place_of(a, b, c);
+        if is_hidden(front.depth, at) {
+            break;
+        }
         for (var n = 0u; n < march.steps; n++) {
             let apex_name = names.x ^ names.y ^ names.z ^ names.w ^ a.name ^ b.name ^ c.name;
             let apex = corner_of(ray, cell, apex_name);
@@ -119,12 +123,13 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
                     segment.front = apex.value;
                     segment.back = apex.value;
                 }
+                segment = cut(segment, vec2<f32>(max(front.depth, near), back.depth), at);
                 if segment.length > 0.0 {
                     color += (1.0 - color.a) * shade(range, segment);
                 }
                 front = back;
             }
-            if next == NONE || color.a >= march.opaque {
+            if next == NONE || color.a >= march.opaque || is_hidden(front.depth, at) {
                 break;
             }
             cell = next;

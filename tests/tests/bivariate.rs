@@ -90,6 +90,7 @@ fn scene(mesh: &TetMesh, second: &str, classification: Classification, light: Op
     let scalar = mesh.scalar("x", Component::Magnitude).unwrap();
     Scene {
         lighting: light.map(|light| Lighting { light, gradients: mesh.vertex_gradients(&scalar) }),
+        surfaces: Vec::new(),
         scalar,
         second: Some(mesh.scalar(second, Component::Magnitude).unwrap()),
         classification,

@@ -5,6 +5,7 @@ pub(crate) mod march;
 mod picture;
 pub(crate) mod pipelines;
 mod stretch;
+mod surfaces;
 pub(crate) mod tables;
 pub(crate) mod variant;
 
@@ -86,7 +87,7 @@ impl Gpu {
                 self.open.get_or_init(|| open)
             }
         };
-        let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty());
+        let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty(), job.backdrop.is_some());
         self.check_limits(open, job)?;
         let pipelines = |variant, stages: &mut Stages| {
             made(&self.pipelines, variant, stages, || self.checked(open, || Pipelines::new(&open.device, variant)))

@@ -32,6 +32,7 @@
 //! ```
 
 mod adaptive;
+mod backdrop;
 #[cfg(test)]
 mod cell;
 mod device_mesh;
@@ -69,6 +70,7 @@ use tetlux_order::{OrderReport, Orderer};
 use tetlux_scene::{Backend, CellProjection, Classification, Device, Integrator, Plan, Scene, TablePrecision};
 use tetlux_tables::{Table, TableKind, TableSpec};
 
+use crate::backdrop::Backdrop;
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
@@ -117,6 +119,8 @@ struct Job<'a> {
     table_length: f32,
     /// What a march needs instead of the order.
     march: Option<March>,
+    /// Opaque surfaces, if there are any.
+    backdrop: Option<Backdrop>,
     /// Alpha beyond which a pixel is as good as opaque.
     opaque: f32,
     /// Width and height in pixels.
@@ -128,10 +132,11 @@ const HIDDEN_ERROR: f64 = 1e-3;
 
 /// Alpha beyond which a pixel is as good as opaque: what lies behind it, however bright, changes it by no more than
 /// [`HIDDEN_ERROR`] of the error that is allowed.
-fn opaque(max_error: f64, pieces: &[Piece], look: Option<&Look>) -> f32 {
+fn opaque(max_error: f64, pieces: &[Piece], look: Option<&Look>, backdrop: Option<&Backdrop>) -> f32 {
     let luminances = pieces.iter().flat_map(|p| [p.low, p.high]).flat_map(|c| [c[0], c[1], c[2]]);
     let brightest = f64::from(luminances.fold(1.0, f32::max));
     let brightest = look.map_or(brightest, |look| brightest.max(look.brightest));
+    let brightest = backdrop.map_or(brightest, |backdrop| brightest.max(backdrop.brightest().into()));
     (1.0 - HIDDEN_ERROR * max_error / brightest) as f32
 }
 
@@ -216,7 +221,9 @@ impl Renderer {
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
             .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
-        let opaque = opaque(scene.method.max_error, &pieces, look.as_ref());
+        let backdrop = (!scene.surfaces.is_empty())
+            .then(|| stages.run("surfaces", || Backdrop::new(&scene.surfaces, &eye, device_mesh.scale, view.size)));
+        let opaque = opaque(scene.method.max_error, &pieces, look.as_ref(), backdrop.as_ref());
         let job = Job {
             mesh: &device_mesh,
             scalar: &scene.scalar,
@@ -232,11 +239,12 @@ impl Renderer {
             table_length: (1.0 / (device_mesh.scale * table_unit(&tables))) as f32,
             tables: &tables,
             march,
+            backdrop,
             opaque,
             size: view.size,
         };
         let mut spent = None;
-        let (pixels, resources) = match plan.backend {
+        let (mut pixels, resources) = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
                 let (pixels, pieces) = tiles::draw(&job, &mut stages);
@@ -244,6 +252,9 @@ impl Renderer {
                 (pixels, Resources { cells: cells.len(), ..Resources::default() })
             }
         };
+        if let Some(backdrop) = &job.backdrop {
+            backdrop.put_behind(&mut pixels);
+        }
         let warnings = order::doubts(&order, plan);
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
         Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report, spent, warnings })

@@ -1,6 +1,7 @@
 //! The scene file as TOML: keys, types, and the places of impossible values.
 
 mod light;
+mod surface;
 mod transfer;
 mod widget;
 
@@ -17,6 +18,7 @@ use crate::{
     SceneFile, TablePrecision, Target,
 };
 use light::LightTable;
+use surface::SurfaceTable;
 use transfer::Transfer;
 use widget::WidgetTable;
 
@@ -33,6 +35,8 @@ struct Document {
     #[serde(default)]
     widget: Vec<Spanned<WidgetTable>>,
     light: Option<Spanned<LightTable>>,
+    #[serde(default)]
+    surface: Vec<Spanned<SurfaceTable>>,
     #[serde(default)]
     camera: Vec<Spanned<Camera>>,
     #[serde(default)]
@@ -114,7 +118,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
     })?;
     let beside = |file: PathBuf| path.parent().unwrap_or(Path::new("")).join(file);
 
-    let Document { title, mesh, field, transfer, widget, light, camera, image, method } = document;
+    let Document { title, mesh, field, transfer, widget, light, surface, camera, image, method } = document;
     if let Some(split) = &mesh.split
         && ![5, 6].contains(split.get_ref())
     {
@@ -138,6 +142,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
     }
     let unit_distance = source.unit_distance(transfer.get_ref())?;
     let max_error = source.positive(method.max_error.as_ref(), "max_error")?;
+    let light = light.map(|light| source.light(&light)).transpose()?;
     Ok(SceneFile {
         title,
         mesh: mesh.path.map(beside),
@@ -149,7 +154,8 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
         second: source.second(&transfer, &widget)?,
         range: source.range(&transfer)?,
         transfer: source.transfer(&transfer, &widget, beside)?,
-        light: light.map(|light| source.light(&light)).transpose()?,
+        light,
+        surfaces: surface.iter().map(|s| source.surface(s, light, beside)).collect::<Result<_, _>>()?,
         unit_distance,
         cameras: camera.into_iter().map(|c| source.camera(c)).collect::<Result<_, _>>()?,
         size,

@@ -10,7 +10,7 @@ use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_optics::widget::BivariateFunction;
 use tetlux_optics::{Classification, ImageFunction, Light};
 
-use crate::{Camera, Lighting, Method, Projection, Scene, SceneError, document};
+use crate::{Camera, Lighting, Method, Projection, Scene, SceneError, SurfaceSpec, document};
 
 /// A scene without its mesh: plain values, which command-line flags may override.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +38,8 @@ pub struct SceneFile {
     pub range: NodeRange,
     /// Light by the gradient of the field.
     pub light: Option<Light>,
+    /// Opaque surfaces in the volume.
+    pub surfaces: Vec<SurfaceSpec>,
     /// World length over which an opacity of 1 is an optical depth of 1.
     pub unit_distance: UnitDistance,
     /// Cameras; none: one is framed automatically.
@@ -144,6 +146,11 @@ impl SceneFile {
     }
 
     /// The scene on a mesh, seen by its camera of that number.
+    ///
+    /// # Errors
+    ///
+    /// Whatever of the scene the mesh does not have. A scene with surfaces, which are files that other crates read: take
+    /// [`SceneFile::surfaces`] out first, and add to [`Scene::surfaces`] what [`SurfaceSpec::on`] makes of each.
     pub fn scene(&self, mesh: &TetMesh, camera: usize) -> Result<Scene, SceneError> {
         let field = match (&self.field, mesh.fields()) {
             (Some(name), _) => name.clone(),
@@ -157,6 +164,14 @@ impl SceneFile {
                 )));
             }
         };
+        if let Some(surface) = self.surfaces.first() {
+            return Err(SceneError::Surface {
+                path: surface.path.clone(),
+                message: "its triangles are not read yet: take the surfaces out of the scene file, and add each to the \
+                          scene with SurfaceSpec::on"
+                    .into(),
+            });
+        }
         let scalar = mesh.scalar(&field, component(self.component))?;
         let bivariate = matches!(self.transfer, TransferSource::Widgets(_) | TransferSource::Image { .. });
         // Neither gradients nor a second scalar where the scene does not ask for them.
@@ -178,6 +193,7 @@ impl SceneFile {
                     share * low.distance(high)
                 }
             },
+            surfaces: Vec::new(),
             camera: self.camera(mesh, camera)?,
             size: self.size,
             background: self.background,

@@ -27,6 +27,7 @@ mod histogram;
 mod method;
 mod plan;
 mod reason;
+mod surface;
 mod view;
 
 pub use camera::{Camera, Projection};
@@ -39,6 +40,7 @@ pub use method::{
     UnknownName, parse_name,
 };
 pub use plan::{Device, Plan, Skips};
+pub use surface::{Surface, SurfaceSpec};
 pub use view::View;
 
 use glam::DVec3;
@@ -56,6 +58,8 @@ pub struct Scene {
     pub classification: tetlux_optics::Classification,
     /// Light by the gradient, and silhouettes.
     pub lighting: Option<Lighting>,
+    /// Opaque surfaces: the first that a ray meets ends the volume.
+    pub surfaces: Vec<Surface>,
     /// World length over which an opacity of 1 is an optical depth of 1: extinction = opacity / unit distance.
     pub unit_distance: f64,
     /// Where the eye is.

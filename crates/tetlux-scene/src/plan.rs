@@ -122,6 +122,7 @@ impl Plan {
             reasons.push(("target", format!("{target}: {target_reason}")));
         }
         reasons.push(("gradients", of_gradients(scene).into()));
+        reasons.extend(of_surfaces(scene).map(|what| ("surfaces", what)));
         reasons.push((
             "cells",
             format!(
@@ -211,6 +212,13 @@ fn of_gradients(scene: &Scene) -> &'static str {
         (false, true) => "computed: their magnitude is the second scalar",
         (false, false) => "skipped: nothing asks for them",
     }
+}
+
+/// What opaque surfaces there are, if any.
+fn of_surfaces(scene: &Scene) -> Option<String> {
+    let triangles: usize = scene.surfaces.iter().map(|surface| surface.triangles().len()).sum();
+    let count = scene.surfaces.len();
+    (count > 0).then(|| format!("{count} of {triangles} triangles: the first that a ray meets ends the volume"))
 }
 
 fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, String), SceneError> {
@@ -411,6 +419,7 @@ mod tests {
                 .unwrap(),
             ),
             lighting: None,
+            surfaces: Vec::new(),
             unit_distance: 1.0,
             camera: Camera {
                 position: DVec3::new(4.5, -3.0, 0.5),

@@ -40,6 +40,7 @@ impl Setting {
             second: None,
             classification: tetlux_optics::Classification::OneField(transfer),
             lighting: None,
+            surfaces: Vec::new(),
             unit_distance: self.unit_distance,
             camera: Camera {
                 position: self.eye.into(),

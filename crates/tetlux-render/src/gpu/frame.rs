@@ -8,6 +8,7 @@ use super::Open;
 use super::picture::Picture;
 use super::pipelines::Pipelines;
 use super::stretch::{scissor, stretches};
+use super::surfaces;
 use super::tables::{Lookup, binding_of, upload};
 use super::variant::{Binding, CELL_BYTES, Geometry, Variant};
 use crate::{Job, Resources};
@@ -138,6 +139,7 @@ pub(super) fn draw(
     let scene = make.bind(&pipelines.scene, &scene);
 
     let tables = pipelines.tables.as_ref().map(|layout| tables(&make, queue, layout, job));
+    let surfaces = pipelines.surfaces.as_ref().map(|layout| surfaces::bound(open, &make, layout, job));
 
     let geometry = variant.geometry();
     let batch = batch_size(&device.limits(), &geometry).min(cells.max(1));
@@ -189,6 +191,9 @@ pub(super) fn draw(
         pass.set_bind_group(1, &make.bind(&pipelines.draw.batch, &buffers), &[]);
         if let Some(tables) = &tables {
             pass.set_bind_group(2, tables, &[]);
+        }
+        if let Some(surfaces) = &surfaces {
+            pass.set_bind_group(surfaces::GROUP, surfaces, &[]);
         }
         if stretch.group {
             let [x, y, width, height] = scissor(job, &stretch.cells);

@@ -15,6 +15,8 @@ pub(crate) struct Variant {
     pub(crate) integrator: Integrator,
     pub(crate) classification: Classification,
     pub(crate) target: Target,
+    /// Opaque surfaces end rays.
+    pub(crate) surfaces: bool,
 }
 
 /// What a draw call takes a cell.
@@ -54,7 +56,7 @@ pub(crate) enum Binding {
 }
 
 impl Variant {
-    pub(crate) fn new(plan: &Plan, cell_data: bool) -> Variant {
+    pub(crate) fn new(plan: &Plan, cell_data: bool, surfaces: bool) -> Variant {
         Variant {
             group: false,
             orthographic: plan.view.orthographic,
@@ -64,6 +66,7 @@ impl Variant {
             integrator: plan.integrator,
             classification: plan.classification,
             target: plan.target,
+            surfaces,
         }
     }
 
@@ -115,6 +118,7 @@ impl Variant {
             _ => "source::stored",
         };
         let data = if self.cell_data { "data::cell" } else { "data::point" };
+        let surface = if self.surfaces { "surface::opaque" } else { "surface::none" };
         let output = match self.target {
             Target::Rgba8 => "output::straight",
             Target::Rgba8Dither => "output::dither",
@@ -130,6 +134,7 @@ impl Variant {
                 ("quantity", quantity),
                 ("shading", shading),
                 ("source", source),
+                ("surface", surface),
                 ("weights", weights),
             ],
         )
@@ -241,6 +246,7 @@ mod tests {
                                 integrator,
                                 classification,
                                 target,
+                                surfaces: variants.len() & 4 != 0,
                             });
                         }
                     }
@@ -288,6 +294,7 @@ mod tests {
                 bound
                     .extend(tables.iter().map(|&axes| (2, if axes == wgpu::TextureViewDimension::D2 { 1 } else { 2 })));
             }
+            bound.extend(variant.surfaces.then_some((3, 0)));
             assert_eq!(named, bound, "{variant:?}");
         }
     }

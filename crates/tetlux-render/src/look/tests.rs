@@ -29,6 +29,7 @@ fn scene(mesh: &TetMesh, classification: Classification, light: Option<Light>) -
     Scene {
         second: Some(mesh.scalar("g", Component::Magnitude).unwrap()),
         lighting: light.map(|light| Lighting { light, gradients: gradients() }),
+        surfaces: Vec::new(),
         scalar: scalar.clone(),
         classification,
         unit_distance: 1.0,

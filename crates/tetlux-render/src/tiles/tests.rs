@@ -38,7 +38,19 @@ impl Drawing {
         let (background, method) = ([0.0; 3], Method::default());
         let classification = Classification::OneField(transfer.clone());
         let (second, lighting, unit_distance) = (None, None, 1.0);
-        let scene = Scene { scalar, second, classification, lighting, unit_distance, camera, size, background, method };
+        let surfaces = Vec::new();
+        let scene = Scene {
+            scalar,
+            second,
+            classification,
+            lighting,
+            surfaces,
+            unit_distance,
+            camera,
+            size,
+            background,
+            method,
+        };
         let view = scene.camera.view(size).unwrap();
         let device = DeviceMesh::new(&mesh, &scene.scalar);
         Drawing { mesh, transfer, scene, view, device }
@@ -60,7 +72,8 @@ impl Drawing {
             table_precision: TablePrecision::F32,
             table_length: 1.0,
             march: None,
-            opaque: opaque(max_error, &self.pieces(), None),
+            backdrop: None,
+            opaque: opaque(max_error, &self.pieces(), None, None),
             size: self.view.size,
         };
         draw_on(level, &job, &mut Stages::default()).0
