@@ -9,8 +9,8 @@ use glam::DVec3;
 use tetlux_mesh::procedural::{Split, cuboid};
 use tetlux_mesh::{Field, TetMesh};
 use tetlux_scene::{
-    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneFile, SurfaceSpec,
-    TablePrecision, Target, UnitDistance,
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneFile,
+    SurfaceSpec, TablePrecision, Target, UnitDistance,
 };
 
 const TRANSFER: &str = "[transfer]\ncolor = [[0.0, 1.0, 1.0, 1.0]]\nopacity = [[0.0, 1.0]]\n";
@@ -116,13 +116,14 @@ fn surfaces_and_what_is_wrong_with_them() {
     // Scaled, moved, and relative to the mesh's middle.
     let corners = [DVec3::ZERO, DVec3::new(1000.0, 0.0, 0.0), DVec3::new(0.0, -500.0, 0.0)];
     let surface = full.on(&mesh, &corners, vec![[0, 1, 2]]).unwrap();
-    assert_eq!(surface.points().iter().map(|p| p.to_array()).collect::<Vec<_>>(), [
-        [0.5, 1.5, 2.5],
-        [1.5, 1.5, 2.5],
-        [0.5, 1.0, 2.5]
-    ]);
+    assert_eq!(
+        surface.points().iter().map(|p| p.to_array()).collect::<Vec<_>>(),
+        [[0.5, 1.5, 2.5], [1.5, 1.5, 2.5], [0.5, 1.0, 2.5]]
+    );
     let refusal = |spec: &SurfaceSpec, points: &[DVec3], triangles| {
-        spec.on(&mesh, points, triangles).map(|_| panic!("accepted")).unwrap_or_else(|e: tetlux_scene::SceneError| e.to_string())
+        spec.on(&mesh, points, triangles)
+            .map(|_| panic!("accepted"))
+            .unwrap_or_else(|e: tetlux_scene::SceneError| e.to_string())
     };
     assert_says(&refusal(&full, &corners, vec![[0, 1, 2], [0, 1, 3]]), &["c.obj", "triangle 1", "[0, 1, 3]", "of 3"]);
     let far = [DVec3::ZERO, DVec3::ONE, DVec3::splat(1e42)];

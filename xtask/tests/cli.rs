@@ -519,7 +519,9 @@ fn surfaces_of_the_scene_and_of_the_command_line_are_shown_and_judged() {
     file("empty.obj", "");
     file("words.obj", "v 1 2\nf 1 1 1\n");
     file("flat.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n");
-    for (name, part) in [("none.obj", "none.obj"), ("empty.obj", "empty"), ("words.obj", "three"), ("flat.obj", "triangle")] {
+    for (name, part) in
+        [("none.obj", "none.obj"), ("empty.obj", "empty"), ("words.obj", "three"), ("flat.obj", "triangle")]
+    {
         let output = run(folder.path(), &["render", "scene.toml", "--surface", name]);
         assert_fails(&output, &[name, part]);
     }

@@ -10,9 +10,9 @@ use tetlux_optics::{Classification, Light};
 use crate::ReferenceError;
 use crate::definition::Definition;
 use crate::hierarchy::Hierarchy;
-use crate::surface::{Surface, Surfaces};
 use crate::line::Line;
 use crate::quadrature::{Gathered, Integrator, Workspace};
+use crate::surface::{Surface, Surfaces};
 use crate::walk::{BoundaryFace, Segment, Space, segments};
 
 /// The tolerance to take where nothing else is asked.

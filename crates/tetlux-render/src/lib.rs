@@ -3,6 +3,8 @@
 //! Both back ends project cells and composite, for every pixel, the exact integral along its ray through each cell.
 //! Which is used, and in which order cells are composited, the [`Plan`] says.
 //!
+//! Opaque surfaces of the scene are drawn once for either; rays end where they first meet one.
+//!
 //! The CPU back end bins cells into tiles of pixels and draws vectors of pixels, with the best instruction set that the
 //! processor has: pictures are the same bit for bit every time and on any number of threads, and may differ by roundings
 //! between instruction sets. It leaves out what lies behind pixels whose transmittance is below a thousandth of the

@@ -167,9 +167,10 @@ impl SceneFile {
         if let Some(surface) = self.surfaces.first() {
             return Err(SceneError::Surface {
                 path: surface.path.clone(),
-                message: "its triangles are not read yet: take the surfaces out of the scene file, and add each to the \
+                message:
+                    "its triangles are not read yet: take the surfaces out of the scene file, and add each to the \
                           scene with SurfaceSpec::on"
-                    .into(),
+                        .into(),
             });
         }
         let scalar = mesh.scalar(&field, component(self.component))?;

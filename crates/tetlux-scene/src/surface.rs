@@ -59,7 +59,11 @@ impl SurfaceSpec {
             ));
         }
         if let Some(i) = triangles.iter().position(|t| t.iter().any(|&v| v as usize >= points.len())) {
-            return bad(format!("triangle {i} names the points {:?} of {}: each must be one", triangles[i], points.len()));
+            return bad(format!(
+                "triangle {i} names the points {:?} of {}: each must be one",
+                triangles[i],
+                points.len()
+            ));
         }
         Ok(Surface { points: local, triangles, color: self.color, light: self.light })
     }

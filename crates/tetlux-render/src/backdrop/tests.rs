@@ -137,7 +137,8 @@ fn pixels_on_edges_and_corners_are_covered() {
 fn triangles_of_no_area_or_behind_the_eye_end_no_ray() {
     let [perspective, ..] = views();
     let line: Vec<DVec3> = [-1.0, 0.0, 2.0].map(|t| DVec3::new(0.5, -0.5, 1.5) + t * DVec3::ONE).to_vec();
-    let behind: Vec<DVec3> = [DVec3::ZERO, DVec3::X * 9.0, DVec3::Y * 9.0].map(|p| p + DVec3::new(9.0, -12.0, 8.0)).to_vec();
+    let behind: Vec<DVec3> =
+        [DVec3::ZERO, DVec3::X * 9.0, DVec3::Y * 9.0].map(|p| p + DVec3::new(9.0, -12.0, 8.0)).to_vec();
     for points in [line, behind] {
         let surface = spec().on(&mesh(), &points, vec![[0, 1, 2], [0, 0, 1]]).unwrap();
         let (backdrop, ..) = drawn(&surface, &perspective);

@@ -44,7 +44,8 @@ pub(super) fn bound(open: &Open, make: &Maker, layout: &wgpu::BindGroupLayout, j
 
 /// For every pixel the depth from the pivot at which its ray ends.
 fn depths(job: &Job) -> Vec<f32> {
-    let [high, low] = [job.view.pivot_high, job.view.pivot_low].map(|[x, y, z, _]| DVec3::new(x.into(), y.into(), z.into()));
+    let [high, low] =
+        [job.view.pivot_high, job.view.pivot_low].map(|[x, y, z, _]| DVec3::new(x.into(), y.into(), z.into()));
     let pivot = job.eye.frame(high + low).z as f32;
     let from_origin = job.backdrop.iter().flat_map(|backdrop| &backdrop.depths);
     from_origin.map(|&depth| if depth < BEYOND { depth - pivot } else { BEYOND }).collect()

@@ -116,7 +116,8 @@ fn no_ray_passes_between_triangles() {
                 // Through the lattice's lines at height 0, from about 4 above.
                 let origin = DVec3::new(x, y, 0.0) - 4.0 * DVec3::from(direction);
                 let ray = Ray { origin, direction: direction.into(), start: 0.0, end: f64::INFINITY };
-                let inside = direction == [0.0, 0.0, -1.0] || (4..4 * N - 4).contains(&i) && (4..4 * N - 4).contains(&j);
+                let inside =
+                    direction == [0.0, 0.0, -1.0] || (4..4 * N - 4).contains(&i) && (4..4 * N - 4).contains(&j);
                 let seen = caster.cast(&ray);
                 assert!(!inside || seen.alpha == 1.0, "{ray:?}");
             }
