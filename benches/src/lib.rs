@@ -37,6 +37,7 @@ pub fn scene(mesh: &TetMesh, smooth: bool, method: Method) -> Scene {
         classification: Classification::OneField(transfer(smooth)),
         lighting: None,
         emphasis: None,
+        surfaces: Vec::new(),
         unit_distance: 1.0,
         camera: Camera::framing(mesh.bounds(), DVec3::new(-1.0, 1.5, -0.8), DVec3::Z),
         size: [400, 400],

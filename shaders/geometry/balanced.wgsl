@@ -13,12 +13,13 @@ import package::lib::ray::{cell_segment};
 import package::lib::balanced::{Balanced};
 import package::axes::quantity::{linear_in};
 import package::axes::shading::{pieces_between};
+import package::axes::surface::{cut};
 
 @group(1) @binding(1) var<storage, read> projected: array<Balanced>;
 
 struct Fragment {
     @builtin(position) position: vec4<f32>,
-    // Inverse depth (orthographic: 1) and the scalar times it, at the front.
+    // Inverse depth and the scalar times it, at the front; orthographic, the depth from the pivot and the scalar.
     @location(0) @interpolate(linear) front: vec2<f32>,
     @location(1) @interpolate(linear) distances: vec4<f32>,
     @location(2) @interpolate(linear) scalars: vec4<f32>,
@@ -56,8 +57,10 @@ fn place(vertex_index: u32, instance_index: u32) -> Fragment {
         at = silhouette_corner(project_cell(c.vertices, c.scalars, c.parity), c.vertices, slot);
         fragment.pieces_entry.w = i + 1u;
     } else {
-        let inverse = select(1.0 / v.eye.z, 1.0, ORTHOGRAPHIC);
-        fragment.front = vec2<f32>(inverse, s[k] * inverse);
+        fragment.front = vec2<f32>(v.frame.z, s[k]);
+        if !ORTHOGRAPHIC {
+            fragment.front = vec2<f32>(1.0, s[k]) / v.eye.z;
+        }
         // In a face the distance to it is none and the scalar its own.
         fragment.scalars = vec4<f32>(fragment.front.y);
         fragment.scalars[k] = balanced.scalars[k];
@@ -89,16 +92,19 @@ fn segment_in(fragment: Fragment) -> Segment {
         return segment;
     }
     segment.at = at;
-    let near = fragment.front.x;
-    if ORTHOGRAPHIC {
-        segment.length = distance;
-        segment.back = scalar;
-    } else {
+    segment.front = fragment.front.y;
+    segment.back = scalar;
+    segment.length = distance;
+    var ends = fragment.front.x + vec2<f32>(0.0, distance);
+    if !ORTHOGRAPHIC {
+        let near = fragment.front.x;
         let far = max(near - distance, 1e-30);
-        segment.length = length(vec3<f32>(at * view.pixel, 1.0)) * distance / (near * far);
-        segment.back = scalar / far;
+        segment.front /= near;
+        segment.back /= far;
+        segment.length *= length(vec3<f32>(at * view.pixel, 1.0)) / (near * far);
+        ends = vec2<f32>(1.0 / near, 1.0 / far) - view.forward.w;
     }
-    segment.front = clamp(fragment.front.y / near, fragment.range.x, fragment.range.y);
+    segment.front = clamp(segment.front, fragment.range.x, fragment.range.y);
     segment.back = clamp(segment.back, fragment.range.x, fragment.range.y);
-    return segment;
+    return cut(segment, ends, at);
 }

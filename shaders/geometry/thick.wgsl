@@ -6,11 +6,12 @@ import package::lib::cell::{Cell, HIDDEN, cell_reference};
 import package::lib::silhouette::{silhouette_corner};
 import package::lib::span::{Segment};
 import package::lib::ray::{cell_segment};
-import package::lib::thick::{THICK, back_of, inverse_depth};
+import package::lib::thick::{THICK, front_of, back_of, ends_of};
 import package::axes::quantity::{Quantity, quantity_of, unpacked, linear_in};
-import package::axes::interpolation::{carried, carried_ends, segment_between};
+import package::axes::interpolation::{carried, carried_ends, segment_between, depths_between};
 import package::axes::shading::{pieces_between};
 import package::axes::source::{projected_cell};
+import package::axes::surface::{cut};
 
 struct Fragment {
     @builtin(position) position: vec4<f32>,
@@ -63,12 +64,12 @@ fn place(vertex_index: u32, instance_index: u32) -> Fragment {
         let k = u32(cell.planes[3].x) >> (2u * ((triangle + corner - 1u) % count)) & 3u;
         let v = c.vertices[k];
         at = v.pixel;
-        ends = vec2<f32>(inverse_depth(v), 0.0);
+        ends = ends_of(v);
         front = quantity_of(c.scalars[k], c.names[k]);
         back = front;
     }
     fragment.position = at_pixel(at);
-    fragment.front = carried(front, ends.x);
+    fragment.front = carried(front, front_of(ends));
     fragment.back = carried(back, back_of(ends));
     fragment.ends = carried_ends(ends, at);
     fragment.pieces_entry = vec3<u32>(vec2<u32>(cell.planes[3].zw), entry);
@@ -84,5 +85,6 @@ fn segment_in(fragment: Fragment) -> Segment {
         let reference = cell_reference(c.vertices, c.scalars, cell.gradient.w);
         return cell_segment(cell.planes, linear_in(cell, reference, c), reference, at);
     }
-    return segment_between(fragment.front, fragment.back, fragment.ends, at);
+    let segment = segment_between(fragment.front, fragment.back, fragment.ends, at);
+    return cut(segment, depths_between(fragment.ends, at), at);
 }

@@ -28,7 +28,7 @@ fn flat_fragment(at: vec2<f32>, i: u32, cell: Cell, c: Corners, face: u32) -> Fl
     fragment.plane_2 = cell.planes[2];
     fragment.plane_3 = cell.planes[3];
     fragment.origins = reference.origins;
-    fragment.range_depth = vec3<f32>(reference.w, reference.depth);
+    fragment.range_level = vec3<f32>(reference.w, reference.level);
     let entry = entry_of(i);
     fragment.pieces_entry = vec4<u32>(pieces_between(reference.s.x, reference.s.y, entry), entry, face);
     return with_linear(fragment, linear);
@@ -41,7 +41,8 @@ fn flat_planes(fragment: FlatFragment) -> array<vec4<f32>, 4> {
 fn flat_segment(fragment: FlatFragment) -> Segment {
     var reference: Reference;
     reference.origins = fragment.origins;
-    reference.w = fragment.range_depth.xy;
-    reference.depth = fragment.range_depth.z;
+    reference.w = fragment.range_level.xy;
+    reference.level = fragment.range_level.z;
+    reference.depth = reference.level + view.forward.w;
     return cell_segment(flat_planes(fragment), linear_of(fragment), reference, fragment.position.xy - view.size * 0.5);
 }

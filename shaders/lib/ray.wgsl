@@ -3,6 +3,7 @@ import package::lib::view::{view, ORTHOGRAPHIC};
 import package::lib::cell::{Reference};
 import package::lib::span::{Segment};
 import package::axes::quantity::{Quantity, Linear, linear_at};
+import package::axes::surface::{cut};
 
 // w at the front and at the back end of what the ray through `at`, in pixels from the picture's middle, crosses of a
 // cell; it misses the cell unless the first is greater.
@@ -48,17 +49,20 @@ fn cell_segment(planes: array<vec4<f32>, 4>, linear: Linear, reference: Referenc
     }
     segment.at = at;
     let across = (at - reference.origins.xy) * view.pixel;
+    var ends: vec2<f32>;
     if ORTHOGRAPHIC {
         let direction = vec3<f32>(0.0, 0.0, 1.0);
         segment.length = front - back;
         segment.front = linear_at(linear, 1.0, across, direction, front);
         segment.back = linear_at(linear, 1.0, across, direction, back);
+        ends = reference.level - span;
     } else {
         let direction = vec3<f32>(at * view.pixel, 1.0);
         let depth = reference.depth;
         segment.length = length(direction) * depth * (front - back) / ((1.0 + front) * (1.0 + back));
         segment.front = linear_at(linear, depth, across, direction, front / (1.0 + front));
         segment.back = linear_at(linear, depth, across, direction, back / (1.0 + back));
+        ends = reference.level - depth * (span / (1.0 + span));
     }
-    return segment;
+    return cut(segment, ends, at);
 }

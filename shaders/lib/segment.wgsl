@@ -114,6 +114,14 @@ fn weights_direct(a: f32, b: f32) -> vec3<f32> {
     return vec3<f32>(alpha, alpha * q, alpha * (1.0 - q));
 }
 
+// The share of a segment between the depths `ends`, front and back, that lies before a depth.
+fn share_before(limit: f32, ends: vec2<f32>) -> f32 {
+    if limit >= ends.y {
+        return 1.0;
+    }
+    return clamp((limit - ends.x) / max(ends.y - ends.x, 1e-30), 0.0, 1.0);
+}
+
 // As weights_direct, with the mean luminance throughout: a model, wrong by up to half of alpha in thick segments.
 fn weights_average(a: f32, b: f32) -> vec3<f32> {
     let alpha = opacity(0.5 * (clean(a) + clean(b)));

@@ -24,7 +24,7 @@ const THICK = 3.0;
 //   planes[3]  outer vertices, two bits each, and their number; the first and the last piece
 //
 // The ends of a vertex are the inverse depth of its front end, and by how much that is greater than the back end's; in
-// orthographic views 1 and the thickness.
+// orthographic views the depth of the front end from the pivot, and the thickness.
 
 // The length inside the cell between two ends.
 fn thickness(ends: vec2<f32>, at: vec2<f32>) -> f32 {
@@ -32,6 +32,14 @@ fn thickness(ends: vec2<f32>, at: vec2<f32>) -> f32 {
         return ends.y;
     }
     return length(vec3<f32>(at * view.pixel, 1.0)) * ends.y / (ends.x * back_of(ends));
+}
+
+// The inverse depth of the front end; 1 in orthographic views.
+fn front_of(ends: vec2<f32>) -> f32 {
+    if ORTHOGRAPHIC {
+        return 1.0;
+    }
+    return ends.x;
 }
 
 // The inverse depth of the back end; 1 in orthographic views.
@@ -42,12 +50,12 @@ fn back_of(ends: vec2<f32>) -> f32 {
     return ends.x - ends.y;
 }
 
-// The inverse depth of a vertex; 1 in orthographic views.
-fn inverse_depth(v: Vertex) -> f32 {
+// The ends of a vertex where nothing is before or behind it.
+fn ends_of(v: Vertex) -> vec2<f32> {
     if ORTHOGRAPHIC {
-        return 1.0;
+        return vec2<f32>(v.frame.z, 0.0);
     }
-    return 1.0 / v.eye.z;
+    return vec2<f32>(1.0 / v.eye.z, 0.0);
 }
 
 // A point of a simplex.
@@ -137,7 +145,7 @@ fn decompose(c: Corners, entry: u32) -> Cell {
         front = over_second;
         back = over_first;
     }
-    var ends = vec2<f32>(1.0, front.w - back.w);
+    var ends = vec2<f32>(v[0].frame.z - front.w, front.w - back.w);
     if !ORTHOGRAPHIC {
         ends = vec2<f32>(1.0 + front.w, front.w - back.w) / v[0].eye.z;
     }

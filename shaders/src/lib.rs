@@ -44,6 +44,7 @@ pub const MODULES: &[(&str, &str)] = modules! {
     second { cell none point }
     shading { lit post_clip post_exact preint preint_log preint_q two_scalars vertex }
     source { computed stored }
+    surface { none opaque }
     weights { average direct linear psi q symmetric }
     stages { balance decompose draw group march project }
 };
@@ -65,6 +66,7 @@ pub const DEFAULTS: &[Choice] = &[
     ("second", "second::none"),
     ("shading", "shading::post_exact"),
     ("source", "source::stored"),
+    ("surface", "surface::none"),
     ("weights", "weights::direct"),
 ];
 

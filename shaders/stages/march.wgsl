@@ -9,6 +9,7 @@ import package::lib::span::{Segment};
 import package::lib::walk::{Ray, Corner, ray_through, offset_from, turns, area, place_of};
 import package::axes::quantity::{quantity_at, in_cell};
 import package::axes::shading::{pieces_between, shade};
+import package::axes::surface::{cut, is_hidden};
 
 struct March {
     // A pixel of this alpha is done.
@@ -90,6 +91,9 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
             c = other;
         }
         var front = place_of(a, b, c);
+        if is_hidden(front.depth, at) {
+            break;
+        }
         for (var n = 0u; n < march.steps; n++) {
             let apex_name = names.x ^ names.y ^ names.z ^ names.w ^ a.name ^ b.name ^ c.name;
             let apex = corner_of(ray, cell, apex_name);
@@ -115,12 +119,13 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
                 segment.at = at;
                 segment.front = in_cell(front.value + begin * (back.value - front.value), cell);
                 segment.back = in_cell(back.value, cell);
+                segment = cut(segment, vec2<f32>(max(front.depth, near), back.depth), at);
                 if segment.length > 0.0 {
                     color += (1.0 - color.a) * shade(range, segment);
                 }
                 front = back;
             }
-            if next == NONE || color.a >= march.opaque {
+            if next == NONE || color.a >= march.opaque || is_hidden(front.depth, at) {
                 break;
             }
             cell = next;

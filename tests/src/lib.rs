@@ -28,7 +28,7 @@ use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_reference::{Caster, Ray};
 use tetlux_render::{Model, Renderer};
-use tetlux_scene::{Backend, Camera, CellProjection, Method, Order, Plan, Projection, Scene, View};
+use tetlux_scene::{Backend, Camera, CellProjection, Method, Order, Plan, Projection, Scene, Surface, View};
 
 pub use closed_form::{Convex, Judged, composite, depth_of, judge};
 pub use random::Random;
@@ -139,6 +139,7 @@ pub fn scene(mesh: &TetMesh, transfer: TransferFunction, camera: Camera, size: [
         classification: Classification::OneField(transfer),
         lighting: None,
         emphasis: None,
+        surfaces: Vec::new(),
         unit_distance: 1.0,
         camera,
         size,
@@ -199,13 +200,20 @@ pub fn reference_beside(mesh: &TetMesh, scene: &Scene, by: [f64; 2]) -> Vec<[f64
         colors: colors.as_deref(),
         unit_distance: scene.unit_distance,
         tolerance: REFERENCE_TOLERANCE,
-    })
-    .unwrap_or_else(|e| panic!("the reference: {e}"));
+    });
+    let caster = caster
+        .and_then(|caster| caster.with_surfaces(scene.surfaces.iter().map(as_the_reference_takes_it).collect()))
+        .unwrap_or_else(|e| panic!("the reference: {e}"));
     let ray = |x: u32, y: u32| {
         let (origin, direction) = view.ray(f64::from(x) + 0.5 + by[0], f64::from(y) + 0.5 + by[1]);
         Ray { origin, direction, start: view.near, end: f64::INFINITY }
     };
     caster.render(view.size[0], view.size[1], ray, |_| ())
+}
+
+fn as_the_reference_takes_it(surface: &Surface) -> tetlux_reference::Surface<'_> {
+    let (color, light) = (surface.color(), surface.light());
+    tetlux_reference::Surface { points: surface.points(), triangles: surface.triangles(), color, light }
 }
 
 /// Largest absolute difference of a pixel's four values; infinite where any is not finite.

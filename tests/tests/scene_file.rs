@@ -11,7 +11,7 @@ use tetlux_mesh::{Field, TetMesh};
 use tetlux_optics::emphasis::{Boundary, Contour, Emphasis, Steepness};
 use tetlux_scene::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneFile,
-    TablePrecision, Target, UnitDistance,
+    SurfaceSpec, TablePrecision, Target, UnitDistance,
 };
 
 const TRANSFER: &str = "[transfer]\ncolor = [[0.0, 1.0, 1.0, 1.0]]\nopacity = [[0.0, 1.0]]\n";
@@ -92,6 +92,54 @@ fn impossible_values_are_named_with_key_and_line() {
         ("[method]\nmax_error = nan", 5, "max_error"),
     ] {
         assert_says(&error_after(rest), &[&format!("a.toml:{line}:"), key]);
+    }
+}
+
+#[test]
+fn surfaces_and_what_is_wrong_with_them() {
+    for (rest, line, key) in [
+        ("[[surface]]\ncolor = [1.0, 1.0, 1.0]", 4, "path"),
+        ("[[surface]]\npath = \"a.obj\"\ncolour = 3", 6, "color"),
+        ("[[surface]]\npath = \"a.obj\"\ncolor = [1.0, -0.5, 1.0]", 6, "-0.5"),
+        ("[[surface]]\npath = \"a.obj\"\nscale = 0.0", 6, "scale"),
+        ("[[surface]]\npath = \"a.obj\"\ntranslate = [0.0, nan, 0.0]", 6, "translate"),
+        ("[[surface]]\npath = \"a.obj\"\nlight = { diffuse = -1.0 }", 6, "diffuse"),
+        ("[[surface]]\npath = \"a.obj\"\nlight = { silhouette = 2.0 }", 6, "silhouette"),
+    ] {
+        assert_says(&error_after(rest), &[&format!("a.toml:{line}:"), key]);
+    }
+    let text = format!(
+        "{TRANSFER}[light]\nambient = 0.5\n[[surface]]\npath = \"b.stl\"\n[[surface]]\npath = \"c.obj\"\n\
+         scale = 0.001\ntranslate = [1.0, 2.0, 3.0]\ncolor = [0.5, 0.0, 2.0]\nlight = {{ ambient = 0.25 }}\n"
+    );
+    let mut file = SceneFile::parse("folder/a.toml", &text).unwrap();
+    let [plain, full] = &file.surfaces[..] else { panic!("two surfaces: {:?}", file.surfaces) };
+    // The scene's light, where the surface has none.
+    assert_eq!((plain.path.as_path(), Some(plain.light)), (Path::new("folder/b.stl"), file.light));
+    assert_eq!((plain.scale, plain.translate), (1.0, DVec3::ZERO));
+    assert_eq!((full.color, full.scale, full.light.shares()[0]), ([0.5, 0.0, 2.0], 0.001, 0.25));
+    let mesh = mesh(vec![("only", 1, &|p: DVec3| p.x)]);
+    assert_says(&file.scene(&mesh, 0).unwrap_err().to_string(), &["b.stl", "SurfaceSpec::on"]);
+    let full = file.surfaces.remove(1);
+    file.surfaces.clear();
+    assert!(file.scene(&mesh, 0).unwrap().surfaces.is_empty());
+    // Scaled, moved, and relative to the mesh's middle.
+    let corners = [DVec3::ZERO, DVec3::new(1000.0, 0.0, 0.0), DVec3::new(0.0, -500.0, 0.0)];
+    let surface = full.on(&mesh, &corners, vec![[0, 1, 2]]).unwrap();
+    assert_eq!(
+        surface.points().iter().map(|p| p.to_array()).collect::<Vec<_>>(),
+        [[0.5, 1.5, 2.5], [1.5, 1.5, 2.5], [0.5, 1.0, 2.5]]
+    );
+    let refusal = |spec: &SurfaceSpec, points: &[DVec3], triangles| {
+        spec.on(&mesh, points, triangles)
+            .map(|_| panic!("accepted"))
+            .unwrap_or_else(|e: tetlux_scene::SceneError| e.to_string())
+    };
+    assert_says(&refusal(&full, &corners, vec![[0, 1, 2], [0, 1, 3]]), &["c.obj", "triangle 1", "[0, 1, 3]", "of 3"]);
+    let far = [DVec3::ZERO, DVec3::ONE, DVec3::splat(1e42)];
+    assert_says(&refusal(&full, &far, vec![[0, 1, 2]]), &["c.obj", "point 2", "scale"]);
+    for bad in [SurfaceSpec { scale: -1.0, ..full.clone() }, SurfaceSpec { color: [f64::NAN; 3], ..full.clone() }] {
+        assert_says(&refusal(&bad, &corners, vec![[0, 1, 2]]), &["c.obj", "finite"]);
     }
 }
 

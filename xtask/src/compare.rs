@@ -16,6 +16,7 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   cargo xtask compare
   cargo xtask compare scenes/bluntfin-spiky.toml --mesh bluntfin_tets.vtu --order centroid --json error.json
+  cargo xtask compare mesh.vtu --field pressure --surface body.obj
   cargo xtask compare yesterday.exr today.exr --max-error 1e-5
 
 Exit status: 0 within the error budget, 1 past it, 2 if something failed.";

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use tetlux_ingest::{CacheOutcome, Extras, TetMesh};
+use tetlux_ingest::{CacheOutcome, Extras, Surface, TetMesh};
 use tetlux_mesh::procedural;
 use tetlux_order::Facts;
 use tetlux_render::Model;
 use tetlux_scene::{
     Backend, CellProjection, Classification, FieldSpec, Integrator, Interpolation, Order, Plan, Projection, Scene,
-    SceneFile, TablePrecision, Target, TransferSource, UnitDistance,
+    SceneFile, SurfaceSpec, TablePrecision, Target, TransferSource, UnitDistance,
 };
 
 use crate::mesh_args::MeshArgs;
@@ -41,6 +41,9 @@ pub(crate) struct SceneArgs {
     /// Component of the second axis, from 0; default its magnitude
     #[arg(long, value_name = "I", requires = "second_field")]
     pub(crate) second_component: Option<usize>,
+    /// Opaque surface in the volume (OBJ, STL), in grey and in the scene's light; may be repeated
+    #[arg(long, value_name = "FILE")]
+    pub(crate) surface: Vec<PathBuf>,
     /// Which of the scene's cameras, from 0
     #[arg(long, value_name = "I", default_value_t = 0)]
     pub(crate) camera: usize,
@@ -182,9 +185,16 @@ impl SceneArgs {
     }
 
     /// A scene, which flags have overridden, on a mesh.
-    pub(crate) fn bind(&self, name: String, file: SceneFile, mesh: TetMesh) -> Result<Input> {
+    pub(crate) fn bind(&self, name: String, mut file: SceneFile, mesh: TetMesh) -> Result<Input> {
         let integrator_forced = self.integrator.is_some();
+        let surfaces = std::mem::take(&mut file.surfaces);
         let mut scene = file.scene(&mesh, self.camera)?;
+        for spec in surfaces {
+            let Surface { points, triangles, notes, .. } =
+                progress::during("reading the surface", || Surface::read(&spec.path))?;
+            notes.iter().for_each(|note| say!("{}: {note}", spec.path.display()));
+            scene.surfaces.push(spec.on(&mesh, &points, triangles)?);
+        }
         if let Some(parallel_scale) = self.parallel_scale {
             scene.camera.projection = Projection::Orthographic { parallel_scale };
         }
@@ -236,6 +246,7 @@ impl SceneArgs {
             (_, Some(name)) => file.second = Some(FieldSpec { name: name.clone(), component: self.second_component }),
             (None, None) => {}
         }
+        file.surfaces.extend(self.surface.iter().map(|path| SurfaceSpec::new(path.clone(), file.light)));
         file.size = self.size.unwrap_or(file.size);
         file.unit_distance = self.unit_distance.map_or(file.unit_distance, UnitDistance::Length);
         file.display_space |= self.display_space;

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use tetlux_image::Image;
 use tetlux_reference::{Caster, DEFAULT_TOLERANCE, Ray};
-use tetlux_scene::View;
+use tetlux_scene::{Surface, View};
 
 use crate::input::Input;
 use crate::progress;
@@ -20,7 +20,8 @@ pub(crate) fn image(input: &Input, view: &View, by: [f64; 2]) -> Result<Image> {
         colors: colors.as_deref(),
         unit_distance: input.scene.unit_distance,
         tolerance: DEFAULT_TOLERANCE,
-    })?;
+    })?
+    .with_surfaces(input.scene.surfaces.iter().map(surface).collect())?;
     let ray = |x: u32, y: u32| {
         let (origin, direction) = view.ray(f64::from(x) + 0.5 + by[0], f64::from(y) + 0.5 + by[1]);
         Ray { origin, direction, start: view.near, end: f64::INFINITY }
@@ -30,4 +31,14 @@ pub(crate) fn image(input: &Input, view: &View, by: [f64; 2]) -> Result<Image> {
     bar.finish_and_clear();
     let pixels = pixels.into_iter().map(|p| p.map(|c| c as f32)).collect();
     Ok(Image::from_pixels(view.size[0], view.size[1], pixels)?)
+}
+
+/// A surface as the reference takes it.
+fn surface(surface: &Surface) -> tetlux_reference::Surface<'_> {
+    tetlux_reference::Surface {
+        points: surface.points(),
+        triangles: surface.triangles(),
+        color: surface.color(),
+        light: surface.light(),
+    }
 }

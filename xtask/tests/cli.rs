@@ -561,3 +561,34 @@ fn a_paper_is_measured_by_name() {
     assert_fails(&missing, &["no-such-python", "--python"]);
     assert_fails(&run(folder.path(), &["bench", "--data", "no-such-folder"]), &["no-such-folder"]);
 }
+
+/// A square across the two tetrahedra.
+const OBJ: &str = "v -1 -1 0.25\nv 2 -1 0.25\nv 2 2 0.25\nv -1 2 0.25\nf 1 2 3 4\n";
+
+#[test]
+fn surfaces_of_the_scene_and_of_the_command_line_are_shown_and_judged() {
+    let folder = folder();
+    let file = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    file("square.obj", OBJ);
+    file("with.toml", &format!("{SCENE}[[surface]]\npath = \"square.obj\"\n"));
+    let by_scene = run(folder.path(), &["compare", "with.toml", "--output", "a", "--backend", "cpu"]);
+    assert!(by_scene.status.success(), "{}", stderr(&by_scene));
+    let flags = ["compare", "scene.toml", "--surface", "square.obj", "--output", "b", "--backend", "cpu"];
+    let by_flag = run(folder.path(), &flags);
+    assert!(by_flag.status.success() && stdout(&by_flag).contains("1 of 2 triangles"), "{}", stdout(&by_flag));
+    let [a, b] = ["a/with.exr", "b/scene.exr"].map(|path| read_exr(&folder.path().join(path)).unwrap());
+    assert_eq!(a, b);
+    assert!(a.pixels().iter().filter(|pixel| pixel[3] == 1.0).count() > 100, "the square is seen");
+
+    file("empty.obj", "");
+    file("words.obj", "v 1 2\nf 1 1 1\n");
+    file("flat.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n");
+    for (name, part) in
+        [("none.obj", "none.obj"), ("empty.obj", "empty"), ("words.obj", "three"), ("flat.obj", "triangle")]
+    {
+        let output = run(folder.path(), &["render", "scene.toml", "--surface", name]);
+        assert_fails(&output, &[name, part]);
+    }
+    file("bad.toml", &format!("{SCENE}[[surface]]\npath = \"square.obj\"\nscale = -1.0\n"));
+    assert_fails(&run(folder.path(), &["render", "bad.toml"]), &["bad.toml:13:", "scale", "-1"]);
+}

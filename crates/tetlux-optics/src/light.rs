@@ -40,6 +40,13 @@ pub enum LightError {
     Direction([f64; 3]),
 }
 
+impl Default for Light {
+    /// A light at the eye: ambient 0.3, diffuse 0.7, a highlight of 0.2 with exponent 20; no silhouette.
+    fn default() -> Self {
+        Self { direction: None, ambient: 0.3, diffuse: 0.7, specular: 0.2, shininess: 20.0, silhouette: 0.0 }
+    }
+}
+
 impl Light {
     /// `direction` points towards the light, in world space, and need not have unit length; none: the light is at the
     /// eye. All other numbers are at least 0; a silhouette of 0 is none.

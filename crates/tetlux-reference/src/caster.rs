@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use tetlux_mesh::{Location, ScalarField, TetMesh};
 use tetlux_optics::{Classification, Light};
@@ -12,7 +12,8 @@ use crate::definition::Definition;
 use crate::hierarchy::Hierarchy;
 use crate::line::Line;
 use crate::quadrature::{Gathered, Integrator, Workspace};
-use crate::walk::{Segment, Space, segments};
+use crate::surface::{Surface, Surfaces};
+use crate::walk::{BoundaryFace, Segment, Space, segments};
 
 /// The tolerance to take where nothing else is asked.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -73,18 +74,23 @@ pub struct Radiance {
 /// grazes the surface sees it whole or not at all. Where cells overlap, extinctions and emissions add.
 pub struct Caster<'a> {
     space: Space<'a>,
-    hierarchy: Hierarchy,
+    hierarchy: Hierarchy<BoundaryFace>,
+    /// What ends rays, if anything does.
+    surfaces: Option<Surfaces<'a>>,
     integrator: Integrator<'a>,
     unit_distance: f64,
 }
 
-/// A ray's line in the mesh's space and the way back.
-struct LocalRay {
-    line: Line,
+/// A ray's line in a space of about unit size and the way back.
+pub(crate) struct LocalRay {
+    pub(crate) line: Line,
     /// Parameters on the line between which the ray runs.
-    limits: [f64; 2],
+    pub(crate) limits: [f64; 2],
     /// World length of the line's direction.
     length: f64,
+    /// The line's parameter is the ray's times the second, less the first.
+    shift: f64,
+    per_parameter: f64,
 }
 
 impl<'a> Caster<'a> {
@@ -132,14 +138,25 @@ impl<'a> Caster<'a> {
         if !(tolerance.is_finite() && tolerance > 0.0) {
             return Err(ReferenceError::Tolerance(tolerance));
         }
-        let half_width = mesh.points().iter().fold(0.0, |m: f64, p| m.max(p.as_dvec3().abs().max_element()));
-        let scale = 0.5 / power_of_two_below(half_width);
+        let scale = unit_scale(mesh.points().iter());
         let gradients = lighting.map(|(_, gradients)| gradients);
         let mut space = Space { mesh, scalars: [Some(scalar), second], gradients, colors, scale, empty: Vec::new() };
         space.empty = (0..mesh.cells().len()).into_par_iter().map(|cell| is_empty(&space, cell)).collect();
-        let hierarchy = Hierarchy::new(&space);
+        let hierarchy = BoundaryFace::hierarchy(&space);
         let definition = Definition::new(classification, lighting.map(|(light, _)| light), colors.is_some());
-        Ok(Self { hierarchy, space, integrator: Integrator::new(definition, tolerance), unit_distance })
+        let integrator = Integrator::new(definition, tolerance);
+        Ok(Self { hierarchy, space, surfaces: None, integrator, unit_distance })
+    }
+
+    /// The same scene with opaque surfaces in it: the first that a ray meets ends the volume, and is seen through what of
+    /// the volume is before it. They may lie anywhere.
+    ///
+    /// # Errors
+    ///
+    /// If a triangle names a point that a surface does not have, or a position is not finite.
+    pub fn with_surfaces(mut self, surfaces: Vec<Surface<'a>>) -> Result<Self, ReferenceError> {
+        self.surfaces = Surfaces::new(surfaces)?;
+        Ok(self)
     }
 
     /// The light along one ray: none if its origin or direction is not finite, the direction is 0 or its length,
@@ -149,7 +166,17 @@ impl<'a> Caster<'a> {
     }
 
     fn cast_with(&self, ray: &Ray, found: &mut Vec<Segment>, work: &mut Workspace) -> Radiance {
-        let Some(LocalRay { line, limits, length }) = self.local(ray) else { return Radiance::default() };
+        let hit = self.surfaces.as_ref().and_then(|surfaces| surfaces.first(ray, self.space.mesh.origin()));
+        let Some(hit) = hit else { return self.through(ray, found, work) };
+        let before = self.through(&Ray { end: hit.t, ..*ray }, found, work);
+        let color = [0, 1, 2].map(|k| before.color[k] + (1.0 - before.alpha) * hit.color[k]);
+        Radiance { color, alpha: 1.0, ..before }
+    }
+
+    /// The light of the volume alone.
+    fn through(&self, ray: &Ray, found: &mut Vec<Segment>, work: &mut Workspace) -> Radiance {
+        let local = LocalRay::new(ray, self.space.mesh.origin(), self.space.scale);
+        let Some(LocalRay { line, limits, length, .. }) = local else { return Radiance::default() };
         found.clear();
         segments(&self.space, &self.hierarchy, &line, limits, found);
         if found.is_empty() {
@@ -158,32 +185,6 @@ impl<'a> Caster<'a> {
         let Gathered { color, optical_depth, evaluations } =
             self.integrator.integrate(found, length / self.unit_distance, self.integrator.sight(ray.direction), work);
         Radiance { color, alpha: -(-optical_depth).exp_m1(), segments: found.len(), evaluations }
-    }
-
-    /// The ray on a line that starts outside the mesh, about one mesh width ahead of it.
-    fn local(&self, ray: &Ray) -> Option<LocalRay> {
-        let scale = self.space.scale;
-        // Powers of two, here and in the mesh's scale, keep grid-aligned rays exactly on the grid.
-        let unit = power_of_two_below(ray.direction.abs().max_element());
-        let per_parameter = unit * scale;
-        if !(ray.direction.is_finite() && per_parameter.is_normal() && per_parameter.recip().is_normal()) {
-            return None;
-        }
-        let direction = flush(ray.direction / unit);
-        let origin = (ray.origin - self.space.mesh.origin()) * scale;
-        // From the foot of the mesh's centre two units back, where no point of the mesh is: it lies within sqrt(3).
-        let shift = -origin.dot(direction) / direction.length_squared() - 2.0 / direction.length();
-        let start = flush(direction.mul_add(DVec3::splat(shift), origin));
-        let squared = start.length_squared();
-        if squared.is_nan() || squared > 8.0 {
-            return None;
-        }
-        let line = Line::new(start, direction);
-        Some(LocalRay {
-            line,
-            limits: [ray.start, ray.end].map(|t| t * per_parameter - shift),
-            length: line.direction().length() / scale,
-        })
     }
 
     /// Casts the ray of every pixel, in parallel. `ray` takes column and row, row 0 at the top; `progress` is told
@@ -210,6 +211,42 @@ impl<'a> Caster<'a> {
         );
         image
     }
+}
+
+impl LocalRay {
+    /// The ray on a line that starts outside of what lies round `origin` and is of about unit size times `scale`, some
+    /// such width ahead of it; `None` if it passes far from it.
+    pub(crate) fn new(ray: &Ray, origin: DVec3, scale: f64) -> Option<LocalRay> {
+        // Powers of two, here and in the scale, keep grid-aligned rays exactly on the grid.
+        let unit = power_of_two_below(ray.direction.abs().max_element());
+        let per_parameter = unit * scale;
+        if !(ray.direction.is_finite() && per_parameter.is_normal() && per_parameter.recip().is_normal()) {
+            return None;
+        }
+        let direction = flush(ray.direction / unit);
+        let eye = (ray.origin - origin) * scale;
+        // From the foot of the origin two units back, where no point of the mesh is: it lies within sqrt(3).
+        let shift = -eye.dot(direction) / direction.length_squared() - 2.0 / direction.length();
+        let start = flush(direction.mul_add(DVec3::splat(shift), eye));
+        let squared = start.length_squared();
+        if squared.is_nan() || squared > 8.0 {
+            return None;
+        }
+        let line = Line::new(start, direction);
+        let limits = [ray.start, ray.end].map(|t| t * per_parameter - shift);
+        let length = line.direction().length() / scale;
+        Some(LocalRay { line, limits, length, shift, per_parameter })
+    }
+
+    /// The ray's parameter at one of the line.
+    pub(crate) fn parameter(&self, t: f64) -> f64 {
+        (t + self.shift) / self.per_parameter
+    }
+}
+
+/// The power of two that takes the half-width of points around 0 into [0.5, 1).
+pub(crate) fn unit_scale<'p>(points: impl Iterator<Item = &'p Vec3>) -> f64 {
+    0.5 / power_of_two_below(points.fold(0.0, |m: f64, p| m.max(p.as_dvec3().abs().max_element())))
 }
 
 /// The largest power of two not above a positive number; 1 for 0, and for a subnormal number 0.

@@ -20,6 +20,16 @@ pub(crate) struct Sight {
     half: DVec3,
 }
 
+impl Sight {
+    /// How a ray of this direction sees what a light, if there is one, shines on.
+    pub(crate) fn new(light: Option<&Light>, direction: DVec3) -> Self {
+        let eye = -direction.normalize_or_zero();
+        let Some(light) = light else { return Self { eye, ..Self::default() } };
+        let light = light.direction().map_or(eye, DVec3::from);
+        Self { eye, light, half: (light + eye).normalize_or_zero() }
+    }
+}
+
 /// What a stretch without cuts knows of itself, so that steps at its ends are seen from inside.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inside {
@@ -82,10 +92,7 @@ impl<'a> Definition<'a> {
 
     /// How a ray of this direction sees.
     pub(crate) fn sight(&self, direction: DVec3) -> Sight {
-        let eye = -direction.normalize_or_zero();
-        let Some(light) = self.light else { return Sight { eye, ..Sight::default() } };
-        let light = light.direction().map_or(eye, DVec3::from);
-        Sight { eye, light, half: (light + eye).normalize_or_zero() }
+        Sight::new(self.light, direction)
     }
 
     /// Appends the shares of a segment at which something is not smooth; some may lie outside (0, 1).
@@ -266,12 +273,19 @@ fn share(shape: &Shape, [x, y]: [f64; 2]) -> f64 {
 
 /// Factor of the opacity, and the luminance lit.
 fn lit(light: &Light, luminance: [f64; 3], values: &Values, sight: &Sight) -> (f64, [f64; 3]) {
-    let [ambient, diffuse, specular] = light.shares();
+    let [ambient, diffuse, _] = light.shares();
     let Some(normal) = gradient(values).try_normalize() else {
         return (1.0, luminance.map(|l| l * (ambient + diffuse)));
     };
+    let facing = normal.dot(sight.eye).abs().min(1.0);
+    let factor = if light.silhouette() > 0.0 { (1.0 - facing).powf(light.silhouette()) } else { 1.0 };
+    (factor, lit_surface(light, luminance, normal, sight))
+}
+
+/// The luminance of a surface of this unit normal, lit on both sides.
+pub(crate) fn lit_surface(light: &Light, luminance: [f64; 3], normal: DVec3, sight: &Sight) -> [f64; 3] {
+    let [ambient, diffuse, specular] = light.shares();
     let cosine = |v: DVec3| normal.dot(v).abs().min(1.0);
-    let factor = if light.silhouette() > 0.0 { (1.0 - cosine(sight.eye)).powf(light.silhouette()) } else { 1.0 };
     let highlight = specular * cosine(sight.half).powf(light.shininess());
-    (factor, luminance.map(|l| l * (ambient + diffuse * cosine(sight.light)) + highlight))
+    luminance.map(|l| l * (ambient + diffuse * cosine(sight.light)) + highlight)
 }

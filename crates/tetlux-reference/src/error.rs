@@ -37,6 +37,14 @@ pub enum ReferenceError {
     /// A colour is none.
     #[error("the colour {0:?} of a point must be finite and at least 0")]
     Color([f64; 4]),
+    /// A surface whose triangles or positions cannot be.
+    #[error("surface {surface}: {what}")]
+    Surface {
+        /// Which, from 0.
+        surface: usize,
+        /// What is wrong, and the value found.
+        what: String,
+    },
     /// The unit distance is not a length.
     #[error("the unit distance is {0}: it must be finite and above 0, in world units")]
     UnitDistance(f64),

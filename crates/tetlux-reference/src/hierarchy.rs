@@ -1,65 +1,42 @@
-//! Bounding volumes over the boundary faces: where a line may enter the mesh.
+//! Bounding volumes over triangles: those that a line may meet.
 
 use glam::DVec3;
-use tetlux_mesh::FACES;
 
 use crate::line::Line;
-use crate::walk::Space;
 
-/// Faces a leaf holds at most.
+/// Triangles a leaf holds at most.
 const LEAF: usize = 4;
-/// Boxes are this much larger than what they hold, in units of the mesh's half-width: far above any rounding of the
-/// slab test, far below a cell.
+/// Boxes are this much larger than what they hold, which is of about unit size: far above any rounding of the slab
+/// test, far below a cell.
 const PADDING: f64 = 1.0 / (1u64 << 30) as f64;
-
-/// A boundary face: four times its cell, plus its number in it. Assembling a mesh keeps this within 32 bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct BoundaryFace(u32);
-
-impl BoundaryFace {
-    pub(crate) fn cell(self) -> u32 {
-        self.0 / 4
-    }
-
-    /// Vertices, counter-clockwise from outside.
-    pub(crate) fn vertices(self, cells: &[[u32; 4]]) -> [u32; 3] {
-        FACES[self.0 as usize % 4].map(|i| cells[self.cell() as usize][i])
-    }
-}
 
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// Faces of a leaf; for an inner node the first child follows it and the second is `second`.
+    /// Triangles of a leaf; for an inner node the first child follows it and the second is `second`.
     first: usize,
     count: usize,
     second: usize,
 }
 
-/// A binary tree of boxes, split at the median of the faces' centres.
-pub(crate) struct Hierarchy {
+/// A binary tree of boxes, split at the median of the triangles' centres.
+pub(crate) struct Hierarchy<T> {
     nodes: Vec<Node>,
-    faces: Vec<BoundaryFace>,
+    triangles: Vec<T>,
 }
 
-impl Hierarchy {
-    pub(crate) fn new(space: &Space) -> Self {
-        let cells = space.mesh.cells();
-        let around = space.mesh.neighbors();
-        let mut faces: Vec<BoundaryFace> = (0..around.len())
-            .flat_map(|c| (0..4).filter(move |&f| around[c][f] == tetlux_mesh::NONE).map(move |f| (c, f)))
-            .map(|(c, f)| BoundaryFace((4 * c + f) as u32))
-            .collect();
-        let mut tree = Self { nodes: Vec::with_capacity(faces.len()), faces: Vec::new() };
-        if !faces.is_empty() {
-            let corners = |face: &BoundaryFace| face.vertices(cells).map(|v| space.position(v));
-            tree.build(&mut faces, 0, &corners);
+impl<T: Copy> Hierarchy<T> {
+    /// A tree of triangles with these corners.
+    pub(crate) fn new(mut triangles: Vec<T>, corners: &impl Fn(&T) -> [DVec3; 3]) -> Self {
+        let mut tree = Self { nodes: Vec::with_capacity(triangles.len()), triangles: Vec::new() };
+        if !triangles.is_empty() {
+            tree.build(&mut triangles, 0, corners);
         }
-        tree.faces = faces;
+        tree.triangles = triangles;
         tree
     }
 
-    fn build(&mut self, faces: &mut [BoundaryFace], first: usize, corners: &impl Fn(&BoundaryFace) -> [DVec3; 3]) {
+    fn build(&mut self, faces: &mut [T], first: usize, corners: &impl Fn(&T) -> [DVec3; 3]) {
         let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         let mut centers = bounds;
         for face in &*faces {
@@ -77,7 +54,7 @@ impl Hierarchy {
         let extent = centers[1] - centers[0];
         let axis = extent.max_position();
         let middle = faces.len() / 2;
-        let key = |face: &BoundaryFace| corners(face).iter().map(|p| p[axis]).sum::<f64>();
+        let key = |face: &T| corners(face).iter().map(|p| p[axis]).sum::<f64>();
         faces.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
         let (left, right) = faces.split_at_mut(middle);
         self.build(left, first, corners);
@@ -85,8 +62,8 @@ impl Hierarchy {
         self.build(right, first + middle, corners);
     }
 
-    /// Calls `visit` with a superset of the faces that the line crosses at a parameter up to `end`.
-    pub(crate) fn candidates(&self, line: &Line, end: f64, mut visit: impl FnMut(BoundaryFace)) {
+    /// Calls `visit` with a superset of the triangles that the line crosses at a parameter up to `end`.
+    pub(crate) fn candidates(&self, line: &Line, end: f64, mut visit: impl FnMut(T)) {
         let (origin, direction) = (line.origin(), line.direction());
         let mut next = 0;
         // Median splits of 32-bit counts go at most 32 deep.
@@ -101,7 +78,7 @@ impl Hierarchy {
                 continue;
             }
             if hit {
-                self.faces[node.first..node.first + node.count].iter().for_each(|&face| visit(face));
+                self.triangles[node.first..node.first + node.count].iter().for_each(|&triangle| visit(triangle));
             }
             if waiting == 0 {
                 return;

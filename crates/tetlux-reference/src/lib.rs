@@ -50,9 +50,11 @@ mod hierarchy;
 mod line;
 mod quadrature;
 mod rule;
+mod surface;
 #[cfg(test)]
 mod testing;
 mod walk;
 
 pub use caster::{Caster, DEFAULT_TOLERANCE, Radiance, Ray, Scene};
 pub use error::ReferenceError;
+pub use surface::Surface;

@@ -1,9 +1,9 @@
 //! From cell to cell along a line.
 
 use glam::DVec3;
-use tetlux_mesh::{Location, NONE, ScalarField, TetMesh};
+use tetlux_mesh::{FACES, Location, NONE, ScalarField, TetMesh};
 
-use crate::hierarchy::{BoundaryFace, Hierarchy};
+use crate::hierarchy::Hierarchy;
 use crate::line::{Line, Vertex};
 
 /// What is known of a point: what it is classified by, which is two scalars, or its luminance and opacity themselves; from
@@ -79,6 +79,31 @@ impl Space<'_> {
     }
 }
 
+/// A boundary face: four times its cell, plus its number in it. Assembling a mesh keeps this within 32 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct BoundaryFace(u32);
+
+impl BoundaryFace {
+    /// Bounding volumes over those of a mesh.
+    pub(crate) fn hierarchy(space: &Space) -> Hierarchy<Self> {
+        let (cells, around) = (space.mesh.cells(), space.mesh.neighbors());
+        let faces = (0..around.len())
+            .flat_map(|c| (0..4).filter(move |&f| around[c][f] == NONE).map(move |f| (c, f)))
+            .map(|(c, f)| Self((4 * c + f) as u32))
+            .collect();
+        Hierarchy::new(faces, &|face: &Self| face.vertices(cells).map(|v| space.position(v)))
+    }
+
+    fn cell(self) -> u32 {
+        self.0 / 4
+    }
+
+    /// Vertices, counter-clockwise from outside.
+    fn vertices(self, cells: &[[u32; 4]]) -> [u32; 3] {
+        FACES[self.0 as usize % 4].map(|i| cells[self.cell() as usize][i])
+    }
+}
+
 /// A face that the line crosses into the next cell.
 struct Crossing {
     vertices: [Vertex; 3],
@@ -120,7 +145,7 @@ impl Crossing {
 /// The line's origin must lie outside the mesh's convex hull, the mesh in its direction.
 pub(crate) fn segments(
     space: &Space,
-    hierarchy: &Hierarchy,
+    hierarchy: &Hierarchy<BoundaryFace>,
     line: &Line,
     [start, end]: [f64; 2],
     found: &mut Vec<Segment>,

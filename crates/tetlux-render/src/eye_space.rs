@@ -46,9 +46,40 @@ impl EyeSpace {
         DVec3::new(self.axes[0].dot(position), self.axes[1].dot(position), self.axes[2].dot(position))
     }
 
+    /// A vector in the axes of eye space in those of the mesh.
+    pub(crate) fn turned_back(&self, v: DVec3) -> DVec3 {
+        self.axes[0] * v.x + self.axes[1] * v.y + self.axes[2] * v.z
+    }
+
     /// The pixel position, from the picture's top left corner, of a point in eye space; not before the near plane.
     pub(crate) fn pixel_of(&self, eye: DVec3) -> [f64; 2] {
         let scale = 1.0 / (self.pixel * if self.orthographic { 1.0 } else { eye.z.max(self.near) });
         [eye.x * scale + self.middle[0], eye.y * scale + self.middle[1]]
+    }
+
+    /// Pixel bounds of what lies beyond the near plane of the hull of some points in eye space; low above high if that is
+    /// nothing.
+    pub(crate) fn seen_bounds<const N: usize>(&self, points: [DVec3; N]) -> [[f64; 2]; 2] {
+        let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        let mut reach = |p: [f64; 2]| {
+            for axis in 0..2 {
+                bounds[0][axis] = bounds[0][axis].min(p[axis]);
+                bounds[1][axis] = bounds[1][axis].max(p[axis]);
+            }
+        };
+        for i in 0..N {
+            if points[i].z >= self.near {
+                reach(self.pixel_of(points[i]));
+            }
+            for j in 0..i {
+                // Where an edge passes the near plane.
+                if (points[i].z < self.near) != (points[j].z < self.near) {
+                    let t = (self.near - points[i].z) / (points[j].z - points[i].z);
+                    let crossing = points[i] + (points[j] - points[i]) * t;
+                    reach(self.pixel_of(crossing.with_z(self.near)));
+                }
+            }
+        }
+        bounds
     }
 }

@@ -7,6 +7,7 @@ mod picture;
 pub(crate) mod pipelines;
 mod spent;
 mod stretch;
+mod surfaces;
 pub(crate) mod tables;
 pub(crate) mod variant;
 
@@ -107,7 +108,8 @@ impl Gpu {
                 self.open.get_or_init(|| open)
             }
         };
-        let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty(), job.look.as_ref().map(LookVariant::new));
+        let look = job.look.as_ref().map(LookVariant::new);
+        let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty(), look, job.backdrop.is_some());
         self.check_limits(open, job)?;
         let pipelines = |variant, stages: &mut Stages| {
             made(&self.pipelines, variant, stages, || self.checked(open, || Pipelines::new(&open.device, variant)))

@@ -3,6 +3,8 @@
 //! Both back ends project cells and composite, for every pixel, the exact integral along its ray through each cell.
 //! Which is used, and in which order cells are composited, the [`Plan`] says.
 //!
+//! Opaque surfaces of the scene are drawn once for either; rays end where they first meet one.
+//!
 //! The CPU back end bins cells into tiles of pixels and draws vectors of pixels, with the best instruction set that the
 //! processor has: pictures are the same bit for bit every time and on any number of threads, and may differ by roundings
 //! between instruction sets. It leaves out what lies behind pixels whose transmittance is below a thousandth of the
@@ -33,6 +35,7 @@
 
 mod adaptive;
 mod attributes;
+mod backdrop;
 #[cfg(test)]
 mod cell;
 mod device_mesh;
@@ -72,6 +75,7 @@ use tetlux_scene::{Backend, CellProjection, Classification, Device, Integrator, 
 use tetlux_tables::{Table, TableKind, TableSpec};
 
 use crate::attributes::Attributes;
+use crate::backdrop::Backdrop;
 use crate::device_mesh::DeviceMesh;
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
@@ -124,6 +128,8 @@ struct Job<'a> {
     table_length: f32,
     /// What a march needs instead of the order.
     march: Option<March>,
+    /// Opaque surfaces, if there are any.
+    backdrop: Option<Backdrop>,
     /// Alpha beyond which a pixel is as good as opaque.
     opaque: f32,
     /// Width and height in pixels.
@@ -135,10 +141,11 @@ const HIDDEN_ERROR: f64 = 1e-3;
 
 /// Alpha beyond which a pixel is as good as opaque: what lies behind it, however bright, changes it by no more than
 /// [`HIDDEN_ERROR`] of the error that is allowed.
-fn opaque(max_error: f64, pieces: &[Piece], look: Option<&Look>) -> f32 {
+fn opaque(max_error: f64, pieces: &[Piece], look: Option<&Look>, backdrop: Option<&Backdrop>) -> f32 {
     let luminances = pieces.iter().flat_map(|p| [p.low, p.high]).flat_map(|c| [c[0], c[1], c[2]]);
     let brightest = f64::from(luminances.fold(1.0, f32::max));
     let brightest = look.map_or(brightest, |look| brightest.max(look.brightest));
+    let brightest = backdrop.map_or(brightest, |backdrop| brightest.max(backdrop.brightest().into()));
     (1.0 - HIDDEN_ERROR * max_error / brightest) as f32
 }
 
@@ -238,7 +245,9 @@ impl Renderer {
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
             .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
-        let opaque = opaque(scene.method.max_error, &pieces, look.as_ref());
+        let backdrop = (!scene.surfaces.is_empty())
+            .then(|| stages.run("surfaces", || Backdrop::new(&scene.surfaces, &eye, device_mesh.scale, view.size)));
+        let opaque = opaque(scene.method.max_error, &pieces, look.as_ref(), backdrop.as_ref());
         let job = Job {
             mesh: &device_mesh,
             scalar: &scene.scalar,
@@ -255,10 +264,11 @@ impl Renderer {
             table_length: (1.0 / (device_mesh.scale * table_unit(&tables))) as f32,
             tables: &tables,
             march,
+            backdrop,
             opaque,
             size: view.size,
         };
-        let Drawn { pixels, resources, spent } = match plan.backend {
+        let Drawn { mut pixels, resources, spent } = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
                 let (pixels, pieces) = tiles::draw(&job, &mut stages);
@@ -266,6 +276,9 @@ impl Renderer {
                 Drawn { pixels, resources, spent: job.look.is_some().then_some(pieces) }
             }
         };
+        if let Some(backdrop) = &job.backdrop {
+            backdrop.put_behind(&mut pixels);
+        }
         let warnings = order::doubts(&order, plan);
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
         Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report, spent, warnings })

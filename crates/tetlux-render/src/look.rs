@@ -118,7 +118,8 @@ fn mix<const N: usize>(front: [f32; N], back: [f32; N], u: f32) -> [f32; N] {
 
 impl Look {
     /// None where one field's transfer function is all there is: nothing is made then. `pieces` are its pieces,
-    /// `attributes` what takes their place, `extinction` is that of opacity 1 per device unit, `across` the longest ray, in device units.
+    /// `attributes` what takes their place, `extinction` is that of opacity 1 per device unit, `across` the longest ray, in
+    /// device units.
     ///
     /// # Errors
     ///
@@ -213,7 +214,7 @@ impl Look {
                     let lit = self.illuminated(light, turning, segment);
                     two_fields(&lit, color, opacity, segment.front, segment.back)
                 }
-                Function::Widgets(_) | Function::Image(_) => {
+                Function::Vertex(_) | Function::Widgets(_) | Function::Image(_) => {
                     let gradients = segment.gradients.map(|g| g.to_array());
                     let classified = |from, to, factor| self.classify(segment, from, to, factor);
                     integrate_lit(light, turning, gradients, segment.view, classified)

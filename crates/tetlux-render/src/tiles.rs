@@ -51,6 +51,8 @@ fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spen
         pixel: if eye.orthographic { 0.0 } else { eye.pixel as f32 },
         middle: eye.middle.map(|m| m as f32),
         opaque: job.opaque,
+        backdrop: job.backdrop.as_ref().map(|backdrop| (backdrop, eye.offset.z as f32)),
+        width: job.size[0] as usize,
         look: job.look.as_ref(),
         further: &[],
     };

@@ -2,6 +2,7 @@
 
 mod emphasis;
 mod light;
+mod surface;
 mod transfer;
 mod widget;
 
@@ -19,6 +20,7 @@ use crate::{
 };
 use emphasis::EmphasisTable;
 use light::LightTable;
+use surface::SurfaceTable;
 use transfer::Transfer;
 use widget::WidgetTable;
 
@@ -36,6 +38,8 @@ struct Document {
     widget: Vec<Spanned<WidgetTable>>,
     light: Option<Spanned<LightTable>>,
     emphasis: Option<Spanned<EmphasisTable>>,
+    #[serde(default)]
+    surface: Vec<Spanned<SurfaceTable>>,
     #[serde(default)]
     camera: Vec<Spanned<Camera>>,
     #[serde(default)]
@@ -118,7 +122,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
     })?;
     let beside = |file: PathBuf| path.parent().unwrap_or(Path::new("")).join(file);
 
-    let Document { title, mesh, field, transfer, widget, light, emphasis, camera, image, method } = document;
+    let Document { title, mesh, field, transfer, widget, light, emphasis, surface, camera, image, method } = document;
     if let Some(split) = &mesh.split
         && ![5, 6].contains(split.get_ref())
     {
@@ -142,6 +146,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
     }
     let unit_distance = source.unit_distance(transfer.get_ref())?;
     let max_error = source.positive(method.max_error.as_ref(), "max_error")?;
+    let light = light.map(|light| source.light(&light)).transpose()?;
     Ok(SceneFile {
         title,
         mesh: mesh.path.map(beside),
@@ -153,8 +158,9 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
         second: source.second(&transfer, &widget)?,
         range: source.range(&transfer)?,
         transfer: source.transfer(&transfer, &widget, beside)?,
-        light: light.map(|light| source.light(&light)).transpose()?,
         emphasis: emphasis.map(|emphasis| source.emphasis(&emphasis)).transpose()?,
+        light,
+        surfaces: surface.iter().map(|s| source.surface(s, light, beside)).collect::<Result<_, _>>()?,
         unit_distance,
         cameras: camera.into_iter().map(|c| source.camera(c)).collect::<Result<_, _>>()?,
         size,

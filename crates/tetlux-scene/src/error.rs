@@ -65,6 +65,14 @@ pub enum SceneError {
         /// What is wrong with it.
         source: tetlux_optics::ImageFunctionError,
     },
+    /// A surface that cannot be shown.
+    #[error("{}: {message}", path.display())]
+    Surface {
+        /// The file of its triangles.
+        path: PathBuf,
+        /// The value found and what to do.
+        message: String,
+    },
     /// The field cannot be had.
     #[error(transparent)]
     Field(#[from] MeshError),

@@ -10,7 +10,7 @@ use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_optics::widget::BivariateFunction;
 use tetlux_optics::{Classification, Emphasis, ImageFunction, Light};
 
-use crate::{Camera, Emphasized, Lighting, Method, Projection, Scene, SceneError, document};
+use crate::{Camera, Emphasized, Lighting, Method, Projection, Scene, SceneError, SurfaceSpec, document};
 
 /// A scene without its mesh: plain values, which command-line flags may override.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +40,8 @@ pub struct SceneFile {
     pub light: Option<Light>,
     /// Opacity emphasised at the vertices by the field's derivatives.
     pub emphasis: Option<Emphasis>,
+    /// Opaque surfaces in the volume.
+    pub surfaces: Vec<SurfaceSpec>,
     /// World length over which an opacity of 1 is an optical depth of 1.
     pub unit_distance: UnitDistance,
     /// Cameras; none: one is framed automatically.
@@ -146,6 +148,11 @@ impl SceneFile {
     }
 
     /// The scene on a mesh, seen by its camera of that number.
+    ///
+    /// # Errors
+    ///
+    /// Whatever of the scene the mesh does not have. A scene with surfaces, which are files that other crates read: take
+    /// [`SceneFile::surfaces`] out first, and add to [`Scene::surfaces`] what [`SurfaceSpec::on`] makes of each.
     pub fn scene(&self, mesh: &TetMesh, camera: usize) -> Result<Scene, SceneError> {
         let field = match (&self.field, mesh.fields()) {
             (Some(name), _) => name.clone(),
@@ -159,6 +166,15 @@ impl SceneFile {
                 )));
             }
         };
+        if let Some(surface) = self.surfaces.first() {
+            return Err(SceneError::Surface {
+                path: surface.path.clone(),
+                message:
+                    "its triangles are not read yet: take the surfaces out of the scene file, and add each to the \
+                          scene with SurfaceSpec::on"
+                        .into(),
+            });
+        }
         let scalar = mesh.scalar(&field, component(self.component))?;
         let bivariate = matches!(self.transfer, TransferSource::Widgets(_) | TransferSource::Image { .. });
         // Neither gradients nor a second scalar where the scene does not ask for them.
@@ -195,6 +211,7 @@ impl SceneFile {
                     share * low.distance(high)
                 }
             },
+            surfaces: Vec::new(),
             camera: self.camera(mesh, camera)?,
             size: self.size,
             background: self.background,

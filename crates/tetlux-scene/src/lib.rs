@@ -31,6 +31,7 @@ mod method;
 mod one_peak;
 mod plan;
 mod reason;
+mod surface;
 mod view;
 
 pub use camera::{Camera, Projection};
@@ -45,6 +46,7 @@ pub use method::{
     UnknownName, parse_name,
 };
 pub use plan::{Device, Plan, Skips};
+pub use surface::{Surface, SurfaceSpec};
 pub use view::View;
 
 use glam::DVec3;
@@ -64,6 +66,8 @@ pub struct Scene {
     pub lighting: Option<Lighting>,
     /// The scalar classified at the vertices, its opacity emphasised there.
     pub emphasis: Option<Emphasized>,
+    /// Opaque surfaces: the first that a ray meets ends the volume.
+    pub surfaces: Vec<Surface>,
     /// World length over which an opacity of 1 is an optical depth of 1: extinction = opacity / unit distance.
     pub unit_distance: f64,
     /// Where the eye is.

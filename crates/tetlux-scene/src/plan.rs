@@ -167,6 +167,7 @@ impl Plan {
             reasons.push(("target", format!("{target}: {target_reason}")));
         }
         reasons.push(("gradients", of_gradients(scene).into()));
+        reasons.extend(of_surfaces(scene).map(|what| ("surfaces", what)));
         reasons.push((
             "cells",
             format!(
@@ -322,6 +323,13 @@ fn choose_cpu(method: &Method) -> Result<(Backend, String), SceneError> {
     Ok((Backend::Cpu, why))
 }
 
+/// What opaque surfaces there are, if any.
+fn of_surfaces(scene: &Scene) -> Option<String> {
+    let triangles: usize = scene.surfaces.iter().map(|surface| surface.triangles().len()).sum();
+    let count = scene.surfaces.len();
+    (count > 0).then(|| format!("{count} of {triangles} triangles: the first that a ray meets ends the volume"))
+}
+
 fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, String), SceneError> {
     // The march blends nothing, and other formats every device blends.
     let marches = method.marches();
@@ -442,12 +450,7 @@ enum Fate {
 }
 
 /// Of each cell whether it has no data, or nothing of it can be seen; of `colors`, if any, in place of the classification.
-fn unseen(
-    scene: &Scene,
-    mesh: &TetMesh,
-    boxes: Option<&CellBoxes>,
-    colors: Option<&[[f64; 4]]>,
-) -> Vec<Option<Fate>> {
+fn unseen(scene: &Scene, mesh: &TetMesh, boxes: Option<&CellBoxes>, colors: Option<&[[f64; 4]]>) -> Vec<Option<Fate>> {
     let ranges = || mesh.scalar_ranges(&scene.scalar);
     let second = || scene.second.as_ref().map(|second| mesh.scalar_ranges(second));
     let fate = |has_data: bool, visible: bool| match (has_data, visible) {
@@ -567,6 +570,7 @@ mod tests {
             ),
             lighting: None,
             emphasis: None,
+            surfaces: Vec::new(),
             unit_distance: 1.0,
             camera: Camera {
                 position: DVec3::new(4.5, -3.0, 0.5),

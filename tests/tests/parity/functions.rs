@@ -1,7 +1,7 @@
 //! Functions with numbers in them: WGSL on the driver, Rust here, the same inputs bit for bit.
 
 use tetlux_optics::published_f32::linear_published;
-use tetlux_optics::segment_f32::{mean_depth, opacity, weights_average, weights_direct};
+use tetlux_optics::segment_f32::{mean_depth, opacity, share_before, weights_average, weights_direct};
 use tetlux_optics::symmetric_f32::weights_symmetric;
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
 use tetlux_optics::vertex_f32;
@@ -321,4 +321,43 @@ fn a_planted_difference_is_seen() {
     let outputs = run(&source, &[], &[1.5, 1.5], 1, 8);
     let twin = weights_direct(1.5, 1.5);
     assert!(agree(outputs[0], twin[0]) && !agree(outputs[1], twin[1]) && !agree(outputs[2], twin[2]));
+}
+
+const SHARE_TEST: &str = "
+@group(3) @binding(0) var<storage, read> inputs: array<u32>;
+@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = 3u * id.x;
+    if i < arrayLength(&inputs) {
+        let ends = bitcast<vec2<f32>>(vec2<u32>(inputs[i + 1u], inputs[i + 2u]));
+        outputs[id.x] = bitcast<u32>(share_before(bitcast<f32>(inputs[i]), ends));
+    }
+}
+";
+
+#[test]
+fn shares_of_segments_before_a_depth() {
+    let mut random = Random::new(17);
+    let mut inputs = Vec::with_capacity(3 * ROWS);
+    for row in 0..ROWS {
+        let front = random.between(-2.0, 2.0);
+        // Down to lengths that single precision does not tell, and none.
+        let length = if row % 9 == 0 { 0.0 } else { 10f64.powf(random.between(-9.0, 1.0)) };
+        let limit = if row % 7 == 0 { 1e30 } else { front + length * random.between(-0.5, 1.5) };
+        inputs.extend([limit, front, front + length].map(|v| v as f32));
+    }
+    let outputs = run(&(compose("lib::segment", DEFAULTS).unwrap() + SHARE_TEST), &[], &inputs, ROWS, 1);
+    let (mut none, mut some, mut all) = (0, 0, 0);
+    for (row, &found) in inputs.chunks_exact(3).zip(&outputs) {
+        let twin = share_before(row[0], [row[1], row[2]]);
+        assert!(agree(found, twin) && (0.0..=1.0).contains(&found), "{row:?}: {found} and {twin}");
+        let exact = (f64::from(row[0]) - f64::from(row[1])) / (f64::from(row[2]) - f64::from(row[1]));
+        assert!(row[2] <= row[1] || (f64::from(twin) - exact.clamp(0.0, 1.0)).abs() < 1e-6, "{row:?}: {twin}");
+        none += usize::from(twin == 0.0);
+        all += usize::from(twin == 1.0);
+        some += usize::from(twin > 0.0 && twin < 1.0);
+    }
+    assert!(none > ROWS / 10 && some > ROWS / 10 && all > ROWS / 10, "{none} {some} {all}");
 }

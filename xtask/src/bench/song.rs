@@ -70,11 +70,11 @@ fn by_widgets(Input { name, mesh, scene, .. }: Input) -> Result<Input> {
 /// Seconds and processor seconds of a frame, and the largest and the mean error of a small picture against the reference.
 fn measure(bench: &Bench, input: &Input, ways: &[Way]) -> Result<Vec<[f64; 4]>> {
     let mut course = Course::new(input, bench.renderer);
-    let costs = ways.iter().map(|way| Ok(course.cost(*way, bench.runs)?.0)).collect::<Result<Vec<_>>>()?;
+    let costs = course.costs(ways.iter().copied(), bench.runs)?;
     course.scene.size = input.scene.size.map(|side| side.min(COMPARED));
     let truth = truth::image(input, &input.scene.camera.view(course.scene.size)?, [0.0; 2])?;
     let mut found = Vec::new();
-    for (way, cost) in ways.iter().zip(costs) {
+    for (way, (cost, _)) in ways.iter().zip(costs) {
         let (_, _, frame) = course.start(*way)?;
         let error = compare(&truth, &frame.image, input.scene.method.max_error)?;
         found.push([cost.wall_seconds, cost.seconds(), error.max, error.mean]);

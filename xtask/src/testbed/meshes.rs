@@ -41,6 +41,7 @@ impl Setting {
             classification: tetlux_optics::Classification::OneField(transfer),
             lighting: None,
             emphasis: None,
+            surfaces: Vec::new(),
             unit_distance: self.unit_distance,
             camera: Camera {
                 position: self.eye.into(),

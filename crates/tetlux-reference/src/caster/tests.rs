@@ -3,3 +3,4 @@
 mod bivariate;
 mod geometry;
 mod radiance;
+mod surfaces;

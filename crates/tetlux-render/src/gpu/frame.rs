@@ -9,6 +9,7 @@ use super::picture::Picture;
 use super::pipelines::Pipelines;
 use super::spent::{Count, counters};
 use super::stretch::{scissor, stretches};
+use super::surfaces;
 use super::tables::{LAYERS, Lookup, binding_of, upload, upload_layers};
 use super::variant::{Binding, CELL_BYTES, Geometry, Variant};
 use super::{Drawn, Open};
@@ -157,6 +158,7 @@ pub(super) fn draw(
     let scene = make.bind(&pipelines.scene, &scene);
 
     let tables = pipelines.tables.as_ref().map(|layout| tables(&make, queue, layout, job));
+    let surfaces = pipelines.surfaces.as_ref().map(|layout| surfaces::bound(open, &make, layout, job));
 
     let geometry = variant.geometry();
     let batch = batch_size(&device.limits(), &geometry).min(cells.max(1));
@@ -208,6 +210,9 @@ pub(super) fn draw(
         pass.set_bind_group(1, &make.bind(&pipelines.draw.batch, &buffers), &[]);
         if let Some(tables) = &tables {
             pass.set_bind_group(2, tables, &[]);
+        }
+        if let Some(surfaces) = &surfaces {
+            pass.set_bind_group(surfaces::GROUP, surfaces, &[]);
         }
         if stretch.group {
             let [x, y, width, height] = scissor(job, &stretch.cells);

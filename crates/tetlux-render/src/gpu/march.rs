@@ -5,6 +5,7 @@ use wgpu::{BindingType, BufferBindingType, ShaderStages};
 use super::frame::Maker;
 use super::picture::Picture;
 use super::spent::Count;
+use super::surfaces;
 use super::variant::{Binding, Variant};
 use super::{Drawn, Open};
 use crate::march::March;
@@ -27,6 +28,8 @@ pub(super) struct Marcher {
     pipeline: wgpu::ComputePipeline,
     scene: wgpu::BindGroupLayout,
     tables: wgpu::BindGroupLayout,
+    /// Where surfaces end rays, if there are any.
+    surfaces: Option<wgpu::BindGroupLayout>,
 }
 
 impl Marcher {
@@ -56,9 +59,11 @@ impl Marcher {
         let scene: Vec<_> = variant.bindings().into_iter().map(of).collect();
         let scene = layout("scene", &scene);
         let tables = layout("march", &[(0, uniform), (1, storage), (2, storage), (3, storage), (4, picture)]);
+        let surfaces = variant.surfaces.then(|| surfaces::layout(device, ShaderStages::COMPUTE));
+        let layouts = [Some(&scene), Some(&tables), None, surfaces.as_ref()];
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
-            bind_group_layouts: &[Some(&scene), Some(&tables)],
+            bind_group_layouts: &layouts[..if surfaces.is_some() { 4 } else { 2 }],
             immediate_size: 0,
         });
         let constants = [("ORTHOGRAPHIC", f64::from(u8::from(variant.orthographic)))];
@@ -70,7 +75,7 @@ impl Marcher {
             compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             cache: None,
         });
-        Ok(Marcher { pipeline, scene, tables })
+        Ok(Marcher { pipeline, scene, tables, surfaces })
     }
 
     /// Makes the picture; the error is what the driver said.
@@ -104,11 +109,15 @@ impl Marcher {
             layout: &self.tables,
             entries: &entries,
         });
+        let surfaces = self.surfaces.as_ref().map(|layout| surfaces::bound(open, &make, layout, job));
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &scene, &[]);
         pass.set_bind_group(1, &tables, &[]);
+        if let Some(surfaces) = &surfaces {
+            pass.set_bind_group(surfaces::GROUP, surfaces, &[]);
+        }
         let [columns, rows] = job.size.map(|n| n.div_ceil(WORKGROUP));
         pass.dispatch_workgroups(columns, rows, 1);
         drop(pass);

@@ -2,6 +2,7 @@
 
 use wgpu::{BindingType, BufferBindingType, ShaderStages};
 
+use super::surfaces;
 use super::variant::{Binding, Variant};
 use crate::RenderError;
 
@@ -11,6 +12,8 @@ pub(super) struct Pipelines {
     pub(super) scene: wgpu::BindGroupLayout,
     /// Tables and their decoding, if there are any.
     pub(super) tables: Option<wgpu::BindGroupLayout>,
+    /// Where surfaces end rays, if there are any.
+    pub(super) surfaces: Option<wgpu::BindGroupLayout>,
     pub(super) draw: Stage<wgpu::RenderPipeline>,
     /// The stage before it, if there is one.
     pub(super) compute: Option<Stage<wgpu::ComputePipeline>>,
@@ -66,11 +69,14 @@ impl Pipelines {
             let entries: Vec<_> = [(0, ShaderStages::FRAGMENT, uniform)].into_iter().chain(textures).collect();
             layout("tables", &entries)
         });
-        let pipeline_layout = |batch: &wgpu::BindGroupLayout, tables: Option<&wgpu::BindGroupLayout>| {
-            let layouts = [Some(&scene), Some(batch), tables];
+        let surfaces = variant.surfaces.then(|| surfaces::layout(device, ShaderStages::FRAGMENT));
+        let pipeline_layout = |batch: &wgpu::BindGroupLayout, drawn: [Option<&wgpu::BindGroupLayout>; 2]| {
+            let [tables, surfaces] = drawn;
+            let layouts = [Some(&scene), Some(batch), tables, surfaces];
+            let count = layouts.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
             device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,
-                bind_group_layouts: &layouts[..2 + usize::from(tables.is_some())],
+                bind_group_layouts: &layouts[..count],
                 immediate_size: 0,
             })
         };
@@ -85,7 +91,7 @@ impl Pipelines {
                 let batch = layout("batch, written", &[(0, stage, uniform), (1, stage, writable)]);
                 let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                     label: Some(name),
-                    layout: Some(&pipeline_layout(&batch, None)),
+                    layout: Some(&pipeline_layout(&batch, [None; 2])),
                     module: &shader(name)?,
                     entry_point: None,
                     compilation_options: options(),
@@ -101,7 +107,7 @@ impl Pipelines {
         let module = shader(variant.stage())?;
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("draw"),
-            layout: Some(&pipeline_layout(&batch, tables.as_ref())),
+            layout: Some(&pipeline_layout(&batch, [tables.as_ref(), surfaces.as_ref()])),
             vertex: wgpu::VertexState {
                 module: &module,
                 entry_point: Some("cover"),
@@ -127,6 +133,6 @@ impl Pipelines {
             multiview_mask: None,
             cache: None,
         });
-        Ok(Pipelines { scene, tables, draw: Stage { pipeline, batch }, compute })
+        Ok(Pipelines { scene, tables, surfaces, draw: Stage { pipeline, batch }, compute })
     }
 }

@@ -21,6 +21,8 @@ pub(crate) struct Variant {
     pub(crate) integrator: Integrator,
     pub(crate) classification: Classification,
     pub(crate) target: Target,
+    /// Opaque surfaces end rays.
+    pub(crate) surfaces: bool,
 }
 
 /// What a draw call takes a cell.
@@ -76,7 +78,7 @@ impl Binding {
 }
 
 impl Variant {
-    pub(crate) fn new(plan: &Plan, cell_data: bool, look: Option<LookVariant>) -> Variant {
+    pub(crate) fn new(plan: &Plan, cell_data: bool, look: Option<LookVariant>, surfaces: bool) -> Variant {
         Variant {
             group: false,
             orthographic: plan.view.orthographic,
@@ -88,6 +90,7 @@ impl Variant {
             integrator: plan.integrator,
             classification: plan.classification,
             target: plan.target,
+            surfaces,
         }
     }
 
@@ -140,6 +143,7 @@ impl Variant {
         };
         let attributes = if self.given { "attributes::given" } else { "attributes::classified" };
         let data = if self.cell_data { "data::cell" } else { "data::point" };
+        let surface = if self.surfaces { "surface::opaque" } else { "surface::none" };
         let output = match self.target {
             Target::Rgba8 => "output::straight",
             Target::Rgba8Dither => "output::dither",
@@ -156,6 +160,7 @@ impl Variant {
                 ("quantity", quantity),
                 ("shading", shading),
                 ("source", source),
+                ("surface", surface),
                 ("weights", weights),
             ],
         );
@@ -279,6 +284,7 @@ mod tests {
                                 integrator,
                                 classification,
                                 target,
+                                surfaces: variants.len() & 4 != 0,
                             };
                             variants.push(variant);
                             if classification == Classification::Vertex {
@@ -315,6 +321,7 @@ mod tests {
                         cell_data: looks.len() % 3 == 0,
                         look: Some(LookVariant { function, second_by_cell, lit }),
                         given: false,
+                        surfaces: looks.len() % 2 == 0,
                         projection,
                         interpolation: Interpolation::Ray,
                         integrator,
@@ -367,6 +374,7 @@ mod tests {
                 bound
                     .extend(tables.iter().map(|&axes| (2, if axes == wgpu::TextureViewDimension::D2 { 1 } else { 2 })));
             }
+            bound.extend(variant.surfaces.then_some((3, 0)));
             assert_eq!(named, bound, "{variant:?}");
         }
     }

@@ -30,6 +30,7 @@ fn scene(mesh: &TetMesh, classification: Classification, light: Option<Light>) -
         second: Some(mesh.scalar("g", Component::Magnitude).unwrap()),
         lighting: light.map(|light| Lighting { light, gradients: gradients() }),
         emphasis: None,
+        surfaces: Vec::new(),
         scalar: scalar.clone(),
         classification,
         unit_distance: 1.0,

@@ -38,14 +38,24 @@ pub(crate) struct Segments<S: Simd> {
     pub(crate) extent: S::f32s,
 }
 
+/// Where the rays of a block's pixels end, if anything in the volume ends rays.
+#[derive(Clone, Copy)]
+pub(crate) struct Ends<S: Simd> {
+    /// Depths from the mesh's origin.
+    pub(crate) levels: S::f32s,
+    /// Depth of the origin.
+    pub(crate) origin: f32,
+}
+
 /// The segments of the rays through some pixels, counted from the middle of the cell's box, `stretch` the rays' length for a depth
-/// of 1; `None` if all miss the cell.
+/// of 1, `ends` where they end; `None` if all miss the cell.
 #[inline(always)]
 pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(
     simd: S,
     record: &Record,
     (x, y): (S::f32s, S::f32s),
     stretch: S::f32s,
+    ends: Option<Ends<S>>,
 ) -> Option<Segments<S>> {
     let p = linear(simd, record.planes[0], x, y);
     let q = linear(simd, record.planes[1], x, y);
@@ -68,6 +78,10 @@ pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(
         }
         0 => back = back.max(p).max(q).max(r.max(s)),
         _ => front = front.min(p).min(q).min(r.min(s)),
+    }
+    if let Some(Ends { levels, origin }) = ends {
+        let before = S::f32s::splat(simd, record.level) - levels;
+        back = back.max(if ORTHOGRAPHIC { before } else { before / (levels + origin) });
     }
     if !front.simd_gt(back).any_true() {
         return None;

@@ -63,6 +63,12 @@ pub(crate) struct Record {
 }
 
 impl Record {
+    /// Depth of the nearest vertex, or of the near plane, from the mesh's origin.
+    #[inline(always)]
+    pub(crate) fn nearest_level(&self, orthographic: bool) -> f32 {
+        self.level - if orthographic { self.nearest } else { self.depth * self.nearest / (1.0 + self.nearest) }
+    }
+
     /// The pixel in the box's middle.
     #[inline(always)]
     pub(crate) fn middle(&self) -> [u32; 2] {
@@ -294,7 +300,8 @@ impl SetUp<'_> {
                 }
             }
         } else {
-            [low, high] = self.clipped_bounds(points);
+            let bounds = self.eye.seen_bounds(points.map(|p| p.frame + self.eye.offset));
+            [low, high] = bounds.map(|corner| corner.map(|p| p as f32));
         }
         for axis in 0..2 {
             // The pixels whose centres, at i + 1/2, lie between the bounds. A conversion of a float saturates.
@@ -306,33 +313,6 @@ impl SetUp<'_> {
             (record.first, record.end) = ([0; 2], [0; 2]);
         }
         seen
-    }
-
-    /// Pixel bounds of what is seen of a cell that reaches over the near plane; low above high if that is nothing.
-    fn clipped_bounds(&self, points: [&Point; 4]) -> [[f32; 2]; 2] {
-        let near = self.eye.near;
-        let eye = points.map(|p| p.frame + self.eye.offset);
-        let mut bounds = [[f32::MAX; 2], [f32::MIN; 2]];
-        let mut reach = |p: [f32; 2]| {
-            for axis in 0..2 {
-                bounds[0][axis] = bounds[0][axis].min(p[axis]);
-                bounds[1][axis] = bounds[1][axis].max(p[axis]);
-            }
-        };
-        for i in 0..4 {
-            if eye[i].z >= near {
-                reach(points[i].pixel);
-            }
-            for j in 0..i {
-                // Where an edge passes the near plane.
-                if (eye[i].z < near) != (eye[j].z < near) {
-                    let t = (near - eye[i].z) / (eye[j].z - eye[i].z);
-                    let crossing = eye[i] + (eye[j] - eye[i]) * t;
-                    reach(self.eye.pixel_of(crossing.with_z(near)).map(|p| p as f32));
-                }
-            }
-        }
-        bounds
     }
 
     /// Sets the range of a cell's scalars and the pieces of the transfer function that it meets.

@@ -38,12 +38,14 @@ impl Drawing {
         let (background, method) = ([0.0; 3], Method::default());
         let classification = Classification::OneField(transfer.clone());
         let (second, lighting, emphasis, unit_distance) = (None, None, None, 1.0);
+        let surfaces = Vec::new();
         let scene = Scene {
             scalar,
             second,
             classification,
             lighting,
             emphasis,
+            surfaces,
             unit_distance,
             camera,
             size,
@@ -72,7 +74,8 @@ impl Drawing {
             table_precision: TablePrecision::F32,
             table_length: 1.0,
             march: None,
-            opaque: opaque(max_error, &self.pieces(), None),
+            backdrop: None,
+            opaque: opaque(max_error, &self.pieces(), None, None),
             size: self.view.size,
         };
         draw_on(level, &job, &mut Stages::default()).0

@@ -4,11 +4,12 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 use tetlux_optics::transfer_f32::Weights;
 
 use super::bins::TILE;
-use super::block::{Segments, WIDTH, places, segments};
+use super::block::{Ends, Segments, WIDTH, places, segments};
 use super::further::{Inside, Linear};
 use super::ramp::{Pixels, Ramp, add_cut_segment, add_segment, only};
 use super::record::{Chunk, Record, at};
-use crate::look::{Ends, Look, Segment, Spent};
+use crate::backdrop::{BEYOND, Backdrop};
+use crate::look::{self, Look, Segment, Spent};
 
 /// Pixels of a tile.
 pub(crate) const PIXELS: usize = (TILE * TILE) as usize;
@@ -43,6 +44,10 @@ pub(crate) struct Light<'a> {
     pub(crate) middle: [f32; 2],
     /// A pixel of this alpha is done.
     pub(crate) opaque: f32,
+    /// What ends rays, and the depth of the mesh's origin.
+    pub(crate) backdrop: Option<(&'a Backdrop, f32)>,
+    /// Pixels across the picture.
+    pub(crate) width: usize,
     /// What there is beyond one field's transfer function, and the further fields of the cells.
     pub(crate) look: Option<&'a Look>,
     pub(crate) further: &'a [Linear],
@@ -60,6 +65,9 @@ pub(crate) struct Walk<'a, S: Simd> {
     alive: u64,
     /// Length of the rays for a depth of 1.
     stretch: [f32; PIXELS],
+    /// Where the rays end, if any do, and the deepest of them: depths from the mesh's origin.
+    ends: [f32; PIXELS],
+    deepest: f32,
     /// Of a run of cells without order: the blocks that each may cover, and a block's fragments. Kept for the next run.
     masks: Vec<u64>,
     fragments: Vec<Fragment<S>>,
@@ -81,11 +89,22 @@ impl<'a, S: Simd> Walk<'a, S> {
         let alive = u64::MAX >> (64 - blocks);
         let (tile, stretch) = ([[0.0; PIXELS]; 4], [1.0; PIXELS]);
         let (masks, fragments, spent) = (Vec::new(), Vec::new(), Spent::default());
-        let mut walk = Walk { simd, light, origin, tile, alive, stretch, masks, fragments, spent };
+        let (ends, deepest) = ([BEYOND; PIXELS], BEYOND);
+        let mut walk = Walk { simd, light, origin, tile, alive, stretch, ends, deepest, masks, fragments, spent };
         for (y, row) in rows.iter().enumerate() {
             for (x, pixel) in row.iter().enumerate() {
                 for i in 0..4 {
                     walk.tile[i][place(x, y, lanes)] = pixel[i];
+                }
+            }
+        }
+        if let Some((backdrop, _)) = light.backdrop {
+            walk.deepest = f32::MIN;
+            for (y, row) in rows.iter().enumerate() {
+                let first = (origin[1] as usize + y) * light.width + origin[0] as usize;
+                for (x, &depth) in backdrop.depths[first..][..row.len()].iter().enumerate() {
+                    walk.ends[place(x, y, lanes)] = depth;
+                    walk.deepest = walk.deepest.max(depth);
                 }
             }
         }
@@ -150,6 +169,11 @@ impl<'a, S: Simd> Walk<'a, S> {
         }
     }
 
+    #[inline(always)]
+    fn ends(&self, block: usize) -> Option<Ends<S>> {
+        self.light.backdrop.map(|(_, origin)| Ends { levels: self.load(&self.ends, block), origin })
+    }
+
     /// The tile's first pixel, counted from the middle of a cell's box.
     #[inline(always)]
     fn from(&self, record: &Record) -> (f32, f32) {
@@ -159,7 +183,10 @@ impl<'a, S: Simd> Walk<'a, S> {
 
     /// The blocks alive that a cell may cover.
     #[inline(always)]
-    fn blocks(&self, record: &Record) -> u64 {
+    fn blocks<const ORTHOGRAPHIC: bool>(&self, record: &Record) -> u64 {
+        if self.light.backdrop.is_some() && record.nearest_level(ORTHOGRAPHIC) > self.deepest {
+            return 0;
+        }
         let rows = (S::f32s::LEN / WIDTH) as u32;
         let span = |axis: usize, side: u32| {
             let first = record.first[axis].max(self.origin[axis]) - self.origin[axis];
@@ -208,13 +235,14 @@ impl<'a, S: Simd> Walk<'a, S> {
             touch(chunks, cells);
             for &i in cells {
                 let record = at(chunks, i);
-                let mut blocks = self.blocks(record);
+                let mut blocks = self.blocks::<ORTHOGRAPHIC>(record);
                 let (x, y) = self.from(record);
                 while blocks != 0 {
                     let block = blocks.trailing_zeros() as usize;
                     blocks &= blocks - 1;
                     let (places, stretch) = (self.places(block, x, y), self.load(&self.stretch, block));
-                    if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch) {
+                    let ends = self.ends(block);
+                    if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch, ends) {
                         let mut pixels = self.pixels(block);
                         if self.light.look.is_some() {
                             self.shade(i, record, &segments, (block, places), &mut pixels);
@@ -330,7 +358,7 @@ fn shade_lanes(
         let place = lanes.place.map(|axis| axis[i]);
         let inside = Inside { place, middle: lanes.middle[i], extent: lanes.extent[i] };
         let first = [lanes.front[i], lanes.back[i]].map(|s| record.base + s);
-        let Ends { scalars: [front, back], colors: ends, gradients } =
+        let look::Ends { scalars: [front, back], colors: ends, gradients } =
             look.values(first, further.iter().map(|field| field.ends(&inside, orthographic)));
         let [x, y] = lanes.pixel.map(|axis| -axis[i] * light.pixel / lanes.stretch[i]);
         let view = [x, y, -1.0 / lanes.stretch[i]];
@@ -383,14 +411,14 @@ impl<S: Simd> Walk<'_, S> {
         masks.clear();
         let mut blocks = 0;
         for &i in run {
-            let mask = self.blocks(at(chunks, i));
+            let mask = self.blocks::<ORTHOGRAPHIC>(at(chunks, i));
             blocks |= mask;
             masks.push(mask);
         }
         while blocks != 0 {
             let block = blocks.trailing_zeros() as usize;
             blocks &= blocks - 1;
-            let stretch = self.load(&self.stretch, block);
+            let (stretch, ends) = (self.load(&self.stretch, block), self.ends(block));
             fragments.clear();
             let mut before = S::f32s::splat(self.simd, f32::MIN);
             for (&i, mask) in run.iter().zip(&masks) {
@@ -400,7 +428,7 @@ impl<S: Simd> Walk<'_, S> {
                 let record = at(chunks, i);
                 let (x, y) = self.from(record);
                 let places = self.places(block, x, y);
-                if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch) {
+                if let Some(segments) = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch, ends) {
                     let mut color = [S::f32s::splat(self.simd, 0.0); 4];
                     if self.light.look.is_some() {
                         self.shade(i, record, &segments, (block, places), &mut color);

@@ -19,6 +19,15 @@ pub(super) struct LightTable {
 }
 
 impl Source<'_> {
+    /// The light of a surface, which has no silhouette.
+    pub(super) fn light_of_surface(&self, table: &Spanned<LightTable>) -> Result<Light, SceneError> {
+        if let Some(silhouette) = &table.get_ref().silhouette {
+            let message = "makes a volume transparent, and a surface is opaque: leave it out";
+            return Err(self.value(silhouette, "silhouette", message.into()));
+        }
+        self.light(table)
+    }
+
     pub(super) fn light(&self, table: &Spanned<LightTable>) -> Result<Light, SceneError> {
         let t = table.get_ref();
         let or = |value: &Option<Spanned<f64>>, default: f64| value.as_ref().map_or(default, |v| *v.get_ref());
@@ -26,10 +35,11 @@ impl Source<'_> {
         let lit = [&t.ambient, &t.diffuse, &t.specular, &t.shininess].iter().any(|v| v.is_some())
             || t.direction.is_some()
             || t.silhouette.is_none();
-        let defaults = if lit { [0.3, 0.7, 0.2] } else { [1.0, 0.0, 0.0] };
+        let standard = Light::default();
+        let defaults = if lit { standard.shares() } else { [1.0, 0.0, 0.0] };
         let shares = [or(&t.ambient, defaults[0]), or(&t.diffuse, defaults[1]), or(&t.specular, defaults[2])];
         let direction = t.direction.as_ref().map(|d| *d.get_ref());
-        Light::new(direction, shares, or(&t.shininess, 20.0), or(&t.silhouette, 0.0)).map_err(|error| {
+        Light::new(direction, shares, or(&t.shininess, standard.shininess()), or(&t.silhouette, 0.0)).map_err(|error| {
             let at = |value: &Option<Spanned<f64>>, key| match value {
                 Some(value) => self.value(value, key, error.to_string()),
                 None => self.value(table, key, error.to_string()),
