@@ -178,7 +178,7 @@ def peak():
 
 
 def serve(scene):
-    """Answers lines "RENDERER TURN [PICTURE]" with a line of JSON each, until the input ends."""
+    """Answers lines "RENDERER TURN [PICTURE]", tabs between, with a line of JSON each, until the input ends."""
     print(json.dumps(scene.machine()), flush=True)
     for line in sys.stdin:
         name, turn, *picture = line.rstrip("\n").split("\t")

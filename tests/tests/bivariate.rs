@@ -15,7 +15,7 @@ use tetlux_scene::{
     SceneFile, TablePrecision, Target,
 };
 use tetlux_tables::{Table, TableSpec};
-use tetlux_tests::{Random, largest_error, pixel_error, orthographic, perspective, reference, renderer, transfer};
+use tetlux_tests::{Random, largest_error, orthographic, perspective, pixel_error, reference, renderer, transfer};
 
 const BUDGETS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
@@ -332,9 +332,14 @@ fn published_modes_are_the_same_on_both_back_ends() {
             let apart: Vec<f64> = pairs.map(|(&g, c)| pixel_error(g, c.map(f64::from))).collect();
             let largest = apart.iter().copied().fold(0.0, f64::max);
             let others = apart.iter().filter(|&&a| a > CANCELLED).count();
-            println!("{name}, {integrator}: the back ends are {largest:.1e} apart, {others} pixels by more than rounding");
+            println!(
+                "{name}, {integrator}: the back ends are {largest:.1e} apart, {others} pixels by more than rounding"
+            );
             let share = if (*name, integrator) == ("triangle", Integrator::Analytic) { UNSTABLE_SHARE } else { 0.0 };
-            assert!(others as f64 <= share * apart.len() as f64, "{name}, {integrator}: {others} pixels, {largest:.1e}");
+            assert!(
+                others as f64 <= share * apart.len() as f64,
+                "{name}, {integrator}: {others} pixels, {largest:.1e}"
+            );
             assert_eq!(cpu.spent.unwrap().pieces > 0, gpu.spent.unwrap().pieces > 0);
         }
     }

@@ -3,7 +3,8 @@
 //! An [`Image`] holds linear RGBA in `f32`, premultiplied by alpha, top row first: what a renderer makes and what a
 //! reference is compared with. It is kept without loss as OpenEXR ([`write_exr`], [`read_exr`]), shown as 8-bit PNG
 //! ([`write_png`]), judged by [`compare`] and made visible by [`difference_picture`]. Every file is written beside
-//! its destination and renamed into place ([`write_atomically`]), so a failure never costs an earlier result.
+//! its destination and renamed into place ([`write_atomically`]), so a failure never costs an earlier result. Figures are
+//! plotted on logarithmic axes as SVG ([`log_log`]).
 //!
 //! ```
 //! use tetlux_image::{Image, compare, read_exr, write_exr};

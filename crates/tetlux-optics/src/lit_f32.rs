@@ -12,7 +12,8 @@
 //! opacity and colour vary by no more than themselves over the segment, what varies evenly about that point cancels,
 //! and V t / (12 n^2) + W t^2 / (24 n^2) is left; where they end within a piece, that piece alone (a_i / n of the opacity)
 //! errs by V t / (2 n). [`turns_of`] takes n for V t / (4 n^2) + W t^2 / (16 n^2). Peaks that are narrower than a piece
-//! are not covered by that: the error is then the larger for its part, and what is measured has to say.
+//! are not covered by that, so that it is an estimate: by the tests no random segment, through widgets or through peaks of
+//! a hundredth of it, takes more than half of what it may err by. [`crate::lit_linear_f32`] has a bound that is proved.
 
 #[cfg(test)]
 mod tests;

@@ -24,7 +24,7 @@
 //! That is an estimate; by the tests it keeps to the error, too.
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use crate::light_f32::{LightUniform, half_way, lit, normal, silhouette_factor};
 use crate::segment_f32::{weights_average, weights_direct};

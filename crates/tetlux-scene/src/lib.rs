@@ -25,6 +25,7 @@ mod error;
 mod file;
 mod frequency;
 mod histogram;
+mod integral;
 mod look;
 mod method;
 mod one_peak;

@@ -3,13 +3,14 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::{ScalarField, TetMesh};
-use tetlux_optics::Classification::{Image, OneField, TwoFields, Widgets};
-use tetlux_optics::widget::{Rectangle, Shape, WaveProfile, Widget};
+use tetlux_optics::Classification::Widgets;
+use tetlux_optics::widget::Rectangle;
 
 use crate::file::gradient_name;
+use crate::integral::{choose_integrator, integral_of};
 use crate::look;
 use crate::one_peak::beyond_published;
-use crate::reason::{of_classification, of_integrator, of_interpolation, of_projection, of_table_precision, of_target};
+use crate::reason::{of_classification, of_interpolation, of_projection, of_table_precision, of_target};
 use crate::{
     Backend, CellBoxes, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError,
     TablePrecision, Target, View,
@@ -184,21 +185,8 @@ impl Plan {
     }
 }
 
-/// The integral inside a cell and its error.
-fn integral_of(scene: &Scene, integrator: Integrator, pieces: u32) -> String {
-    let budget = scene.method.max_error;
-    let color = match (integrator, &scene.classification) {
-        (_, TwoFields(_)) => format!("{integrator}: cut at the nodes of both fields, relative error 1e-5"),
-        (Integrator::Adaptive, _) => format!("adaptive: opacity exact, colour within the budget of {budget:e}"),
-        (Integrator::Approximate, _) => format!("{} ({pieces} equal pieces)", says(integrator, of_integrator)),
-        _ => says(integrator, of_integrator),
-    };
-    let lit = scene.lighting.as_ref().map_or(String::new(), |_| format!("; light in pieces by {budget:e} too"));
-    color + &lit
-}
-
 /// A choice and its reason.
-fn says<T: Copy + std::fmt::Display>(choice: T, reason: fn(T) -> &'static str) -> String {
+pub(crate) fn says<T: Copy + std::fmt::Display>(choice: T, reason: fn(T) -> &'static str) -> String {
     format!("{choice}: {}", reason(choice))
 }
 
@@ -209,46 +197,6 @@ impl std::fmt::Display for Plan {
         }
         Ok(())
     }
-}
-
-/// The integral that the classification has, unless one is asked for that it can have.
-fn choose_integrator(scene: &Scene) -> Result<Integrator, SceneError> {
-    let refuse = |message: String| Err(SceneError::Method(message));
-    let asked = scene.method.integrator;
-    let wants = |what: &str, use_instead: &str| {
-        refuse(format!("integrator \"{asked}\" is for {what}: use --integrator {use_instead}"))
-    };
-    if asked.is_published_bivariate() && scene.lighting.is_some() {
-        return refuse(format!(
-            "integrator \"{asked}\" has no light, as it was published: leave out [light], or use --integrator adaptive"
-        ));
-    }
-    match (asked, &scene.classification) {
-        (Integrator::Auto | Integrator::Adaptive, Widgets(_) | Image(_)) => Ok(Integrator::Adaptive),
-        (Integrator::Auto | Integrator::Direct, OneField(_) | TwoFields(_)) => Ok(Integrator::Direct),
-        (Integrator::Analytic, Widgets(function)) => match function.widgets.iter().any(is_sine_squared) {
-            true => refuse(
-                "integrator \"analytic\" has no sine-squared wave, as it was published: use shape = \"sine\", or \
-                 --integrator adaptive"
-                    .into(),
-            ),
-            false => Ok(asked),
-        },
-        (Integrator::Approximate, Widgets(_) | Image(_)) => Ok(asked),
-        (Integrator::Analytic, Image(_)) => {
-            wants("widgets, and an image has no closed form", "approximate or adaptive")
-        }
-        (Integrator::Adaptive | Integrator::Analytic | Integrator::Approximate, _) => {
-            wants("widgets and images, and a transfer function is cut at its nodes exactly", "direct")
-        }
-        (_, OneField(_)) => Ok(asked),
-        (_, TwoFields(_)) => wants("one field with a transfer function", "direct"),
-        (_, Widgets(_) | Image(_)) => wants("a transfer function", "adaptive"),
-    }
-}
-
-fn is_sine_squared(widget: &Widget) -> bool {
-    matches!(widget.shape(), Shape::Wave { profile: WaveProfile::SineSquared, .. })
 }
 
 /// What gradients are computed for, or that they are not.

@@ -61,12 +61,12 @@ pub(crate) fn enhancements(bench: &Bench) -> Result<Table> {
     let size = bench.paper_size(SIZE);
     let (input, source) = BLUNT_FIN.input(bench, size)?;
     let mut course = Course::new(&input, bench.renderer);
-    let all = ENHANCEMENTS.iter().map(|(way, theirs)| (*way, Some(*theirs))).chain([(OURS, None)]);
-    let costs = all.map(|(way, theirs)| Ok((way.0, theirs, course.cost(way, bench.runs)?.0)));
-    let costs = costs.collect::<Result<Vec<_>>>()?;
+    let ways = ENHANCEMENTS.iter().map(|(way, _)| *way).chain([OURS]);
+    let costs = course.costs(ways.clone(), bench.runs)?;
+    let theirs = ENHANCEMENTS.iter().map(|(_, seconds)| Some(*seconds)).chain([None]);
     // Each over that of the basic algorithm.
-    let [theirs_basic, ours_basic] = [ENHANCEMENTS[0].1, costs[0].2.wall_seconds];
-    let rows = costs.into_iter().map(|(name, theirs, cost)| {
+    let [theirs_basic, ours_basic] = [ENHANCEMENTS[0].1, costs[0].0.wall_seconds];
+    let rows = ways.zip(theirs).zip(costs).map(|(((name, _), theirs), (cost, _))| {
         vec![
             name.into(),
             theirs.into(),
@@ -96,8 +96,9 @@ pub(crate) fn data_sets(bench: &Bench) -> Result<Table> {
     for (set, seconds, rate) in sets {
         let (input, source) = set.input(bench, size)?;
         let mut course = Course::new(&input, bench.renderer);
-        for (way, theirs) in [(("as published", logarithmic as fn(&mut Method)), Some((seconds, rate))), (OURS, None)] {
-            let (cost, _, frame) = course.cost(way, bench.runs)?;
+        let ways: [Way; 2] = [("as published", logarithmic), OURS];
+        let costs = course.costs(ways, bench.runs)?;
+        for ((way, theirs), (cost, frame)) in ways.iter().zip([Some((seconds, rate)), None]).zip(costs) {
             rows.push(vec![
                 format!("{} ({source})", set.name).into(),
                 way.0.into(),

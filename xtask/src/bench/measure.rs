@@ -20,8 +20,8 @@ pub(crate) type Way = (&'static str, fn(&mut Method));
 /// enough that nothing is kept from the last view.
 pub(crate) const TURN: f64 = 1e-3;
 
-/// Seconds; what takes longer by the clock is timed once.
-pub(crate) const LONG: f64 = 5.0;
+/// Processor seconds; what takes longer is timed once.
+pub(crate) const LONG: f64 = 10.0;
 
 /// The name of the stage that is a whole frame.
 const FRAME: &str = "frame";
@@ -103,17 +103,24 @@ impl<'a> Course<'a> {
         Ok(())
     }
 
-    /// The cost of a way alone.
-    pub(crate) fn cost(&mut self, way: Way, runs: usize) -> Result<(Cost, Plan, Frame)> {
-        let (mut runner, plan, frame) = self.start(way)?;
-        self.run_in_turn(std::slice::from_mut(&mut runner), runs)?;
-        Ok((runner.cost(), plan, frame))
+    /// What ways cost that are timed in turn, and the first frame of each.
+    pub(crate) fn costs(&mut self, ways: impl IntoIterator<Item = Way>, runs: usize) -> Result<Vec<(Cost, Frame)>> {
+        let mut runners = Vec::new();
+        let mut frames = Vec::new();
+        for way in ways {
+            let (runner, _, frame) = self.start(way)?;
+            runners.push(runner);
+            frames.push(frame);
+        }
+        self.run_in_turn(&mut runners, runs)?;
+        Ok(runners.iter().map(Runner::cost).zip(frames).collect())
     }
 }
 
 impl Runner {
     pub(crate) fn is_long(&self) -> bool {
-        self.samples.first().and_then(|sample| sample.first()).is_some_and(|whole| whole.wall > LONG)
+        let whole = self.samples.first().and_then(|sample| sample.first());
+        whole.is_some_and(|whole| whole.cpu.unwrap_or(whole.wall) > LONG)
     }
 
     pub(crate) fn cost(&self) -> Cost {
@@ -179,7 +186,7 @@ mod tests {
         let renderer = Renderer::new();
         let mut course = Course::new(&input, &renderer);
         let cpu: Way = ("cpu", |m| m.backend = tetlux_scene::Backend::Cpu);
-        let (cost, _, frame) = course.cost(cpu, 3).unwrap();
+        let (cost, frame) = course.costs([cpu], 3).unwrap().remove(0);
         assert!(frame.image.pixels().iter().any(|p| p[3] > 0.1));
         assert_eq!(cost.frames, 3);
         let names: Vec<_> = cost.stages.iter().map(|stage| stage.name).collect();

@@ -136,8 +136,9 @@ fn rates(bench: &Bench, name: &'static str, what: &str, ways: &[Way], theirs: [V
     for (set, theirs) in SETS.iter().zip(theirs) {
         let (input, source) = set.input(bench, size)?;
         let mut course = Course::new(&input, bench.renderer);
-        for (i, way) in ways.iter().chain(&OURS).enumerate() {
-            let (cost, _, frame) = course.cost(*way, bench.runs)?;
+        let all: Vec<Way> = ways.iter().chain(&OURS).copied().collect();
+        let costs = course.costs(all.iter().copied(), bench.runs)?;
+        for (i, (way, (cost, frame))) in all.iter().zip(costs).enumerate() {
             let rate = theirs.get(i).copied();
             rows.push(vec![
                 format!("{} ({source})", set.name).into(),
@@ -202,16 +203,14 @@ pub(crate) fn sizes(bench: &Bench) -> Result<Table> {
     let sizes: Vec<u32> = all.into_iter().filter(|&side| side <= largest).collect();
     let (input, source) = BLUNT_FIN.input(bench, SIZE)?;
     let mut course = Course::new(&input, bench.renderer);
-    let mut rows = Vec::new();
-    for (i, way) in PROJECTIONS.iter().chain(&OURS).enumerate() {
-        let theirs = PROJECTION_RATES[0].get(i).map(|rate| rate[1] * 1e-3);
-        let mut row = vec![Cell::from(way.0), theirs.into()];
-        for &side in &sizes {
-            course.scene.size = [side; 2];
-            let (cost, _, frame) = course.cost(*way, bench.runs)?;
+    let all: Vec<Way> = PROJECTIONS.iter().chain(&OURS).copied().collect();
+    let theirs = |i: usize| PROJECTION_RATES[0].get(i).map(|rate| rate[1] * 1e-3);
+    let mut rows: Vec<Vec<Cell>> = (0..all.len()).map(|i| vec![all[i].0.into(), theirs(i).into()]).collect();
+    for &side in &sizes {
+        course.scene.size = [side; 2];
+        for (row, (cost, frame)) in rows.iter_mut().zip(course.costs(all.iter().copied(), bench.runs)?) {
             row.push((frame.resources.cells as f64 / cost.wall_seconds * 1e-6).into());
         }
-        rows.push(row);
     }
     let head = ["method", "theirs: 800 x 800"].map(String::from).into_iter();
     Ok(Table {

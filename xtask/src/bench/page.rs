@@ -26,8 +26,15 @@ is found once a mesh; the eye moves a little from frame to frame. CPU is user an
 machine compare that, and ratios of one run.
 ";
 
+const QUICK: &str = "
+**A quick run**: meshes and pictures are small, a frame of each. It shows that everything works; its figures say little.
+";
+
 pub(crate) fn page(results: &Results, folder: &str) -> Page {
     let mut page = Page { markdown: String::from(HEAD), plots: Vec::new() };
+    if results.quick {
+        page.markdown += QUICK;
+    }
     let peer = results.races.iter().find_map(|race| race.peer.clone());
     let peer = peer.map(|about| [["VTK".to_owned(), about.version], ["OpenGL of VTK".to_owned(), about.opengl]]);
     let rows = results.machine.rows().into_iter().chain(peer.into_iter().flatten());
@@ -57,6 +64,9 @@ alone, along the rays that it casts, in its 8 bits (which end at 53 dB). What is
 faster and of less largest error. `share of` is our processor time over the peer's. Peak is the most that was resident of the
 process while it drew its first frame, device what buffers and textures took.
 ";
+
+/// Milliseconds; stages that take less are not told.
+const LEAST: f64 = 0.05;
 
 impl Page {
     fn section(&mut self, title: &str, text: &str) {
@@ -98,18 +108,19 @@ impl Page {
                 milliseconds(cost.wall_seconds),
                 cost.cpu_seconds.map_or("-".into(), milliseconds),
             ];
-            let share = |rival: &&Entry| match entry.rival {
+            let of_rival = |rival: &&Entry| match entry.rival {
                 Some(_) => "-".to_owned(),
-                None => format!("1/{}", number(rival.cost.seconds() / cost.seconds())),
+                None => share(cost.seconds() / rival.cost.seconds()),
             };
-            row.extend(rivals.iter().map(share));
+            row.extend(rivals.iter().map(of_rival));
             row.extend([mib(entry.peak_bytes), mib(entry.device_bytes)]);
             row
         });
         let _ = write!(self.markdown, "\n{}", markdown(&head, rows));
         let stages = race.entries.iter().filter(|entry| !entry.cost.stages.is_empty()).map(|entry| {
+            let stages = entry.cost.stages.iter().map(|stage| (stage.name, entry.cost.stage(stage.name) * 1e3));
             let stages =
-                entry.cost.stages.iter().map(|s| format!("{} {}", s.name, number(entry.cost.stage(s.name) * 1e3)));
+                stages.filter(|(_, took)| *took >= LEAST).map(|(name, took)| format!("{name} {}", number(took)));
             vec![entry.name.clone(), entry.method.clone(), stages.collect::<Vec<_>>().join(", ")]
         });
         let _ = write!(self.markdown, "\n{}", markdown(&["way", "what it is", "stages, CPU ms"], stages));
@@ -147,7 +158,7 @@ impl Page {
         let peak = |way: &Grown| way.peak_bytes.map(|bytes| bytes as f64 / f64::from(1 << 20));
         let mut memory = curves(&mut scaling.cells.iter().map(|point| (cells(point), &point.ways)), peak);
         memory.iter_mut().for_each(|curve| curve.name += ", peak of the process");
-        let mesh = scaling.cells.iter().map(|point| [cells(point), point.mesh_bytes.unwrap_or(0) as f64 * mib]);
+        let mesh = scaling.cells.iter().map(|point| [cells(point), point.mesh_bytes as f64 * mib]);
         memory.push(Curve { name: "the mesh".into(), points: mesh.collect(), style: Style::Line });
         for (name, alt, labels, curves) in [
             ("growth-cells", "time against cells", ["cells", "processor seconds a frame"], &in_cells),
@@ -167,7 +178,7 @@ impl Page {
             first.iter().map(|name| (*name).to_owned()).chain(ways).collect()
         };
         let rows = scaling.cells.iter().map(|point| {
-            let bytes = point.mesh_bytes.map_or("-".into(), |bytes| number((bytes as f64 / cells(point)).round()));
+            let bytes = number((point.mesh_bytes as f64 / cells(point)).round());
             [vec![point.cells.to_string(), number(point.assemble_wall_seconds * 1e3), bytes], of(&point.ways)].concat()
         });
         let table = markdown(&head(&["cells", "mesh ready, wall ms", "mesh, bytes a cell"]), rows);
@@ -176,6 +187,11 @@ impl Page {
         let table = markdown(&head(&["picture"]), rows);
         let _ = write!(self.markdown, "\n{table}");
     }
+}
+
+/// A share, as a fraction if it is one.
+fn share(of: f64) -> String {
+    if of <= 1.0 { format!("1/{}", number(1.0 / of)) } else { number(of) }
 }
 
 fn race_plot(race: &Race) -> String {

@@ -106,7 +106,7 @@ fn cylinder(cells: usize) -> Result<TetMesh> {
         let angle = if u.x == 1.0 { 0.0 } else { u.x * std::f64::consts::TAU };
         let wall = 0.5 - 0.3 * u.y;
         let radius = wall + 3.0 * u.z * u.z;
-        glam::DVec3::new(radius * angle.cos(), radius * angle.sin(), 4.0 * u.y)
+        glam::DVec3::new(radius * angle.cos(), -radius * angle.sin(), 4.0 * u.y)
     });
     assemble(&parts, |p| (3.0 * p.x).sin() * (4.0 * p.y - p.z).cos() / (0.5 + p.truncate().length()))
 }

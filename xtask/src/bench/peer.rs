@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use tetlux_image::{Image, write_atomically};
 use tetlux_mesh::{Location, ScalarField, TetMesh};
+use tetlux_optics::TransferFunction;
 use tetlux_scene::Projection;
 
 use crate::input::Input;
@@ -67,12 +68,11 @@ pub(crate) struct Took {
 }
 
 impl Peer {
-    /// Writes the job to a folder and starts the program on it.
-    pub(crate) fn start(python: &str, folder: &Path, input: &Input) -> Result<Peer> {
-        let job = write_job(folder, input)?;
-        let said = folder.join("stderr.txt");
+    /// Starts the program on a job.
+    pub(crate) fn start(python: &str, job: &Path) -> Result<Peer> {
+        let said = job.with_file_name("stderr.txt");
         let mut child = Command::new(python)
-            .args([Path::new(SCRIPT), &job, Path::new("--serve")])
+            .args([Path::new(SCRIPT), job, Path::new("--serve")])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(File::create(&said)?)
@@ -115,21 +115,21 @@ impl Drop for Peer {
     }
 }
 
-/// Writes the mesh and the job that names it; gives the job's path.
-fn write_job(folder: &Path, input: &Input) -> Result<PathBuf> {
+/// Writes the mesh and the job that names it; gives the job's path. What the peer cannot draw is an error.
+pub(crate) fn write_job(folder: &Path, input: &Input) -> Result<PathBuf> {
     let scene = &input.scene;
     let Some(transfer) = scene.transfer().filter(|_| scene.lighting.is_none()) else {
         bail!("{}: a peer draws transfer functions of one field without light", input.name);
     };
+    let [color, opacity] = nodes(transfer, scene.scalar.range);
     // Its opacities end at 1: what is above it is put into the unit distance.
-    let nodes = transfer.opacity_nodes();
-    let scale = nodes.iter().map(|node| node.opacity).fold(1.0, f64::max);
+    let scale = opacity.iter().map(|node| node[1]).fold(1.0, f64::max);
     let camera = &scene.camera;
     let mut job = json!({
         "mesh": "mesh.vtk",
         "field": FIELD,
-        "color": transfer.color_nodes().iter().map(|n| [n.s, n.rgb[0], n.rgb[1], n.rgb[2]]).collect::<Vec<_>>(),
-        "opacity": nodes.iter().map(|n| [n.s, n.opacity / scale]).collect::<Vec<_>>(),
+        "color": color,
+        "opacity": opacity.iter().map(|node| [node[0], node[1] / scale]).collect::<Vec<_>>(),
         "unit_distance": scene.unit_distance / scale,
         "camera": {
             "position": camera.position.to_array(),
@@ -150,6 +150,25 @@ fn write_job(folder: &Path, input: &Input) -> Result<PathBuf> {
     let path = folder.join("job.json");
     write_json(&path, &job)?;
     Ok(path)
+}
+
+/// Share of the field's range that a step in the transfer function takes, where two nodes cannot have one place.
+const STEP: f64 = 1e-9;
+
+/// Scalar, red, green, blue; and scalar, opacity. VTK takes no notice of opacities between the nodes of colours: both have
+/// nodes wherever one of them does, which changes neither.
+fn nodes(transfer: &TransferFunction, range: [f64; 2]) -> [Vec<Vec<f64>>; 2] {
+    let (mut color, mut opacity) = (Vec::new(), Vec::new());
+    for s in transfer.control_points() {
+        let below = (s - STEP * (range[1] - range[0]), transfer.luminance_below(s), transfer.opacity_below(s));
+        let at = (s, transfer.luminance(s), transfer.opacity(s));
+        let steps = (below.1, below.2) != (at.1, at.2);
+        for (s, [red, green, blue], value) in steps.then_some(below).into_iter().chain([at]) {
+            color.push(vec![s, red, green, blue]);
+            opacity.push(vec![s, value]);
+        }
+    }
+    [color, opacity]
 }
 
 /// A mesh and its scalar as a legacy VTK file, binary.
@@ -191,6 +210,7 @@ pub(crate) fn read_ppm(path: &Path) -> Result<Image> {
 #[cfg(test)]
 mod tests {
     use tetlux_ingest::{ReadOptions, Split, read_tet_mesh};
+    use tetlux_optics::transfer::{ColorNode, OpacityNode};
 
     use super::*;
     use crate::methods::PEAK;
@@ -201,14 +221,28 @@ mod tests {
         let input = PEAK.input("peak", "", 20).unwrap();
         let job = write_job(folder.path(), &input).unwrap();
         let job: serde_json::Value = serde_json::from_slice(&std::fs::read(job).unwrap()).unwrap();
-        // The peak of 60 counts as 1 over a sixtieth of the unit.
-        assert_eq!(job["opacity"][2], json!([0.75, 1.0]));
+        // The peak of 60 counts as 1 over a sixtieth of the unit; colours have a node there, too.
+        let place =
+            |nodes: &serde_json::Value| nodes.as_array().unwrap().iter().position(|node| node[0] == 0.75).unwrap();
+        assert_eq!(job["opacity"][place(&job["opacity"])], json!([0.75, 1.0]));
+        assert_eq!(place(&job["color"]), place(&job["opacity"]));
         assert!((job["unit_distance"].as_f64().unwrap() - 1.0 / 60.0).abs() < 1e-15);
         let mesh = folder.path().join("mesh.vtk");
         let mesh = read_tet_mesh(&mesh, &ReadOptions::default(), Split::Six).unwrap();
         assert_eq!((mesh.cells(), mesh.points()), (input.mesh.cells(), input.mesh.points()));
         let scalar = mesh.scalar(FIELD, tetlux_mesh::Component::Magnitude).unwrap();
         assert_eq!(scalar.values, input.scene.scalar.values);
+    }
+
+    #[test]
+    fn steps_keep_both_their_sides() {
+        let color = vec![ColorNode { s: 0.0, rgb: [1.0; 3] }];
+        let opacity =
+            [(0.0, 0.0), (1.0, 0.25), (1.0, 0.75), (2.0, 0.75)].map(|(s, opacity)| OpacityNode { s, opacity });
+        let [color, opacity] = nodes(&TransferFunction::new(color, opacity.to_vec()).unwrap(), [0.0, 2.0]);
+        let values: Vec<f64> = opacity.iter().map(|node| node[1]).collect();
+        assert_eq!((color.len(), values), (4, vec![0.0, 0.25, 0.75, 0.75]));
+        assert!(opacity[1][0] < 1.0 && opacity[2][0] == 1.0);
     }
 
     #[test]
@@ -229,7 +263,8 @@ mod tests {
     fn a_peer_that_cannot_be_says_so() {
         let folder = tempfile::tempdir().unwrap();
         let input = PEAK.input("peak", "", 8).unwrap();
-        let error = |python: &str| Peer::start(python, folder.path(), &input).err().unwrap().to_string();
+        let job = write_job(folder.path(), &input).unwrap();
+        let error = |python: &str| Peer::start(python, &job).err().unwrap().to_string();
         assert!(error("no-such-python-anywhere").contains("--python"));
         #[cfg(unix)]
         assert!(error("true").contains("the peer ended"), "a program that answers nothing");

@@ -5,13 +5,14 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use tetlux_image::{Image, Metrics, compare};
-use tetlux_scene::{Backend, CellProjection, Integrator, Interpolation, Method, Order, Plan, TablePrecision, Target};
+use tetlux_render::Resources;
+use tetlux_scene::{Backend, CellProjection, Integrator, Interpolation, Order, Plan, TablePrecision, Target};
 
 use super::Bench;
 use super::front::front;
 use super::measure::{Cost, Course, LONG, Runner, TURN, Way, median};
 use super::memory;
-use super::peer::{About, Peer, Rival, Took, VTK, read_ppm};
+use super::peer::{About, Peer, Rival, Took, VTK, read_ppm, write_job};
 use crate::input::Input;
 use crate::{progress, truth};
 
@@ -20,6 +21,7 @@ pub(crate) const DEFAULT: &str = "default";
 
 const WAYS: &[Way] = &[
     (DEFAULT, |_| ()),
+    ("CPU", |m| m.backend = Backend::Cpu),
     ("CPU, order pixel", |m| (m.backend, m.order) = (Backend::Cpu, Order::Pixel)),
     ("CPU, order centroid", |m| (m.backend, m.order) = (Backend::Cpu, Order::Centroid)),
     ("CPU, average", |m| (m.backend, m.integrator) = (Backend::Cpu, Integrator::Average)),
@@ -37,7 +39,7 @@ const WAYS: &[Way] = &[
 ];
 
 /// As many as a quick run takes.
-const QUICK_WAYS: usize = 6;
+const QUICK_WAYS: usize = 7;
 
 /// What was found of a scene.
 #[derive(Serialize)]
@@ -82,6 +84,16 @@ impl Race {
     }
 }
 
+/// One of our ways, its first picture judged.
+struct Started {
+    runner: Runner,
+    method: String,
+    backend: Backend,
+    resources: Resources,
+    error: Metrics,
+    peak_bytes: Option<u64>,
+}
+
 /// Draws and judges; `python` runs the peer, if it is to take part.
 pub(crate) fn race(bench: &Bench, input: &Input, python: Option<&str>, folder: &Path) -> Result<Race> {
     let view = input.scene.camera.view(input.scene.size)?;
@@ -89,37 +101,47 @@ pub(crate) fn race(bench: &Bench, input: &Input, python: Option<&str>, folder: &
     let truth = truth::image(input, &view, [0.0; 2])?;
     let mut refused = Vec::new();
     let mut course = Course::new(input, bench.renderer);
-    let mut ours = Vec::new();
+    let mut ours: Vec<Started> = Vec::new();
     let ways = if bench.quick { &WAYS[..QUICK_WAYS] } else { WAYS };
     for way in ways {
         memory::forget_peak();
         match course.start(*way) {
             Ok((runner, plan, frame)) => {
-                let peak = memory::peak();
-                ours.push((runner, plan, frame.resources, compare(&truth, &frame.image, budget)?, peak));
+                let peak_bytes = memory::peak();
+                let error = compare(&truth, &frame.image, budget)?;
+                let method = in_full(&plan);
+                // What the default is may come again by its own name.
+                if ours.iter().all(|known| known.method != method) {
+                    let resources = frame.resources;
+                    ours.push(Started { runner, method, backend: plan.backend, resources, error, peak_bytes });
+                }
             }
             Err(error) => refused.push([way.0.to_owned(), error.to_string()]),
         }
     }
-    let mut theirs = match python {
-        Some(python) => Some(Rivals::start(python, &folder.join(&input.name), input, &truth, &mut refused)?),
-        None => None,
-    };
+    let mut theirs = None;
+    if let Some(python) = python {
+        let folder = folder.join(&input.name);
+        match write_job(&folder, input) {
+            Ok(job) => theirs = Some(Rivals::start(Peer::start(python, &job)?, &folder, input, &truth, &mut refused)?),
+            Err(error) => refused.push(["the peer".to_owned(), error.to_string()]),
+        }
+    }
     for round in 0..bench.runs {
-        for (runner, ..) in ours.iter_mut().filter(|(runner, ..)| round == 0 || !runner.is_long()) {
+        for Started { runner, .. } in ours.iter_mut().filter(|ours| round == 0 || !ours.runner.is_long()) {
             course.run(runner)?;
         }
         if let Some(theirs) = &mut theirs {
             theirs.run(round)?;
         }
     }
-    let ours = ours.into_iter().map(|(runner, plan, resources, error, peak_bytes)| Entry {
+    let ours = ours.into_iter().map(|Started { runner, method, backend, resources, error, peak_bytes }| Entry {
         name: runner.name.to_owned(),
-        method: in_full(&plan),
-        cost: Runner::cost(&runner),
+        method,
+        cost: runner.cost(),
         error,
         cells_drawn: Some(resources.cells),
-        device_bytes: (plan.backend == Backend::Gpu).then_some(resources.bytes),
+        device_bytes: (backend == Backend::Gpu).then_some(resources.bytes),
         peak_bytes,
         on_front: false,
         rival: None,
@@ -165,13 +187,12 @@ struct Rivals {
 
 impl Rivals {
     fn start(
-        python: &str,
+        mut peer: Peer,
         folder: &Path,
         input: &Input,
         truth: &Image,
         refused: &mut Vec<[String; 2]>,
     ) -> Result<Rivals> {
-        let mut peer = Peer::start(python, folder, input)?;
         let view = input.scene.camera.view(input.scene.size)?;
         let mut started = Vec::new();
         let mut truths: Vec<([f64; 2], Image)> = vec![([0.0; 2], colors(truth))];
@@ -196,7 +217,7 @@ impl Rivals {
 
     fn run(&mut self, round: usize) -> Result<()> {
         for (rival, _, _, samples) in &mut self.started {
-            if round > 0 && samples.first().is_some_and(|took| took.wall_seconds > LONG) {
+            if round > 0 && samples.first().is_some_and(|took| took.cpu_seconds > LONG) {
                 continue;
             }
             self.frames += 1;
@@ -233,9 +254,10 @@ fn colors(image: &Image) -> Image {
     image
 }
 
-/// Whether every way can be; for the tests.
 #[cfg(test)]
 mod tests {
+    use tetlux_scene::Method;
+
     use super::*;
 
     #[test]
