@@ -23,7 +23,7 @@ use crate::functions::bytes;
 const ROUNDING: f32 = 2e-5;
 
 /// Of segments that are cut at places which depend on a rounding: one in so many may take other pieces.
-const OTHERWISE_CUT: usize = 100;
+const OTHERWISE_CUT: usize = 50;
 
 /// What f32 cannot hold of rims of rectangles and of phases (tetlux-optics, widgets_f32).
 const SINGLE: f64 = 3e-5;
@@ -291,8 +291,7 @@ impl LookBytes {
             &place,
         ];
         let [width, height] = image.map_or([0; 2], |i| i.size);
-        let words =
-            floats.concat().into_iter().map(f32::to_bits).chain(last);
+        let words = floats.concat().into_iter().map(f32::to_bits).chain(last);
         words.flat_map(u32::to_ne_bytes).collect()
     }
 }
