@@ -5,6 +5,8 @@ import package::axes::data::{scalars_of};
 
 // The cells to draw, nearest first.
 @group(0) @binding(5) var<storage, read> order: array<u32>;
+// Where each point is seen, in pixels from the picture's middle: xy + zw.
+@group(0) @binding(7) var<storage, read> pixels: array<vec4<f32>>;
 
 struct Batch {
     // The batch is drawn back to front: its i-th cell is order[last - i].
@@ -34,7 +36,7 @@ fn corners(i: u32) -> Corners {
     corners.parity = select(1.0, -1.0, (names.x & 0x80000000u) != 0u);
     names.x &= 0x7fffffffu;
     for (var k = 0u; k < 4u; k++) {
-        corners.vertices[k] = vertex(points[names[k]].xyz);
+        corners.vertices[k] = vertex(points[names[k]].xyz, pixels[names[k]]);
     }
     corners.scalars = scalars_of(index, names);
     return corners;

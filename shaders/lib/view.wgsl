@@ -26,19 +26,41 @@ struct View {
 @group(0) @binding(0) var<uniform> view: View;
 
 struct Vertex {
+    // As the mesh has it: differences of these are exact to their own last digit.
+    position: vec3<f32>,
     // Position relative to the pivot, in the axes of eye space.
     frame: vec3<f32>,
     // Position in eye space.
     eye: vec3<f32>,
-    // Position in pixels from the picture's middle; of use only in front of the near plane.
+    // Position in pixels from the picture's middle, as two summands; of use only in front of the near plane.
     pixel: vec2<f32>,
+    rest: vec2<f32>,
 }
 
-fn vertex(position: vec3<f32>) -> Vertex {
-    let p = (position - view.pivot_high.xyz) - view.pivot_low.xyz;
-    let frame = vec3<f32>(dot(view.right.xyz, p), dot(view.down.xyz, p), dot(view.forward.xyz, p));
+// A direction of the mesh in the axes of eye space.
+fn rotated(direction: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(dot(view.right.xyz, direction), dot(view.down.xyz, direction), dot(view.forward.xyz, direction));
+}
+
+// A position relative to the pivot, in the axes of eye space.
+fn frame_of(position: vec3<f32>) -> vec3<f32> {
+    return rotated((position - view.pivot_high.xyz) - view.pivot_low.xyz);
+}
+
+fn vertex(position: vec3<f32>, pixel: vec4<f32>) -> Vertex {
+    let frame = frame_of(position);
     let eye = frame + vec3<f32>(view.right.w, view.down.w, view.forward.w);
-    return Vertex(frame, eye, pixel_of(eye));
+    return Vertex(position, frame, eye, pixel.xy, pixel.zw);
+}
+
+// How much deeper b lies than a.
+fn deeper(a: Vertex, b: Vertex) -> f32 {
+    return dot(view.forward.xyz, b.position - a.position);
+}
+
+// From a to b in pixels.
+fn pixels_between(a: Vertex, b: Vertex) -> vec2<f32> {
+    return (b.pixel - a.pixel) + (b.rest - a.rest);
 }
 
 fn pixel_of(eye: vec3<f32>) -> vec2<f32> {

@@ -1,10 +1,11 @@
 // What is linear in a cell: the scalar. It is classified after it has been interpolated.
 import package::lib::view::{Vertex};
-import package::lib::cell::{Cell, Reference};
+import package::lib::cell::{Cell, Reference, rounded_by};
 
 alias Quantity = f32;
 
-// The gradient and, in w, the value at the reference vertex; the least and the greatest value. The rest is unused.
+// The gradient and, in w, the value at the reference vertex's depth and rounded pixel; the least and the greatest value. The
+// rest is unused.
 alias Linear = array<vec4<f32>, 4>;
 
 fn quantity_of(scalar: f32) -> Quantity {
@@ -22,7 +23,7 @@ fn unpacked(stored: vec4<f32>) -> Quantity {
 
 fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>) -> Linear {
     return Linear(
-        vec4<f32>(cell.gradient.xyz, reference.scalar),
+        vec4<f32>(cell.gradient.xyz, reference.scalar - rounded_by(reference, cell.gradient.xy)),
         vec4<f32>(reference.s, 0.0, 0.0),
         vec4<f32>(0.0),
         vec4<f32>(0.0),

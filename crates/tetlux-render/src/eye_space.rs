@@ -1,6 +1,7 @@
 //! The view in double precision, for the set-up of cells.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use tetlux_mesh::TetMesh;
 use tetlux_scene::View;
 
@@ -50,5 +51,19 @@ impl EyeSpace {
     pub(crate) fn pixel_of(&self, eye: DVec3) -> [f64; 2] {
         let scale = 1.0 / (self.pixel * if self.orthographic { 1.0 } else { eye.z.max(self.near) });
         [eye.x * scale + self.middle[0], eye.y * scale + self.middle[1]]
+    }
+
+    /// Where the points of a mesh are seen, in pixels from the picture's middle: x and y rounded to single precision, and
+    /// what that leaves of them.
+    pub(crate) fn pixels(&self, mesh: &DeviceMesh) -> Vec<[f32; 4]> {
+        let split = |&[x, y, z, _]: &[f32; 4]| {
+            let position = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+            let [x, y] = self.pixel_of(self.frame(position) + self.offset);
+            let pixel = [x - self.middle[0], y - self.middle[1]];
+            let high = pixel.map(|p| p as f32);
+            let low: [f32; 2] = std::array::from_fn(|i| (pixel[i] - f64::from(high[i])) as f32);
+            [high[0], high[1], low[0], low[1]]
+        };
+        mesh.points.par_iter().map(split).collect()
     }
 }

@@ -10,7 +10,7 @@ use tetlux_mesh::{NONE, TetMesh};
 
 use crate::device_mesh::{DeviceMesh, NEGATIVE};
 use crate::device_view::DeviceView;
-use crate::lens::{Lens, NUDGE, Vertex};
+use crate::lens::{Lens, NUDGE};
 
 /// Rows of pixels whose entries one core finds at a time.
 const BAND: usize = 8;
@@ -93,14 +93,14 @@ impl Face {
         if k.is_multiple_of(2) != negative {
             others.swap(1, 2);
         }
-        let vertices: [Vertex; 3] = others.map(|name| {
+        let frames: [Vec3; 3] = others.map(|name| {
             let [x, y, z, _] = device.points[name as usize];
-            lens.vertex(Vec3::new(x, y, z))
+            lens.frame_of(Vec3::new(x, y, z))
         });
-        let [columns, rows] = pixels_of(lens, &vertices, size);
+        let [columns, rows] = pixels_of(lens, &frames, size);
         let entry = 4 * cell + k as u32;
         let seen = columns[0] < columns[1] && rows[0] < rows[1];
-        seen.then(|| Face { entry, names: others, frames: vertices.map(|v| v.frame), columns, rows })
+        seen.then(|| Face { entry, names: others, frames, columns, rows })
     }
 
     /// How deep a ray that comes in through this face crosses it.
@@ -119,11 +119,12 @@ impl Face {
 }
 
 /// The columns and rows of the pixels that a triangle may cover: the line of each ray counts, before the eye and behind.
-fn pixels_of(lens: &Lens, vertices: &[Vertex; 3], size: [u32; 2]) -> [[u32; 2]; 2] {
-    if !lens.orthographic && vertices.iter().any(|v| v.eye.z <= lens.view.near) {
+fn pixels_of(lens: &Lens, frames: &[Vec3; 3], size: [u32; 2]) -> [[u32; 2]; 2] {
+    let eye = frames.map(|frame| lens.eye_of(frame));
+    if !lens.orthographic && eye.iter().any(|eye| eye.z <= lens.view.near) {
         return size.map(|n| [0, n]);
     }
-    let [a, b, c] = vertices.map(|v| v.pixel);
+    let [a, b, c] = eye.map(|eye| lens.pixel_of(eye));
     let (low, high) = (a.min(b).min(c) - MARGIN, a.max(b).max(c) + MARGIN);
     std::array::from_fn(|axis| {
         // The pixels whose centres, at i + 1/2, lie between the bounds. A conversion of a float saturates.

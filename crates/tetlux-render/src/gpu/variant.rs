@@ -51,6 +51,7 @@ pub(crate) enum Binding {
     CellScalars = 4,
     Order = 5,
     EntryPieces = 6,
+    Pixels = 7,
 }
 
 impl Variant {
@@ -172,6 +173,9 @@ impl Variant {
         }
         if self.classification == Classification::PostClip {
             bindings.push(Binding::EntryPieces);
+        }
+        if self.projection != CellProjection::March {
+            bindings.push(Binding::Pixels);
         }
         bindings
     }

@@ -107,6 +107,7 @@ impl Drawing {
     /// The picture that the shaders' twin makes, every pixel sorted.
     fn twin(&self) -> Vec<[f32; 4]> {
         let (lens, pieces) = (self.lens(), self.pieces());
+        let pixels = EyeSpace::new(&self.view, &self.mesh, &self.device).pixels(&self.device);
         let [width, height] = self.view.size;
         let pixel = |index: u32| {
             let [x, y] =
@@ -114,7 +115,11 @@ impl Drawing {
             let mut fragments: Vec<(f32, [f32; 4])> = Vec::new();
             for names in &self.device.cells {
                 let points = names.map(|v| self.device.points[(v & !NEGATIVE) as usize]);
-                let vertices = points.map(|[x, y, z, _]| lens.vertex(Vec3::new(x, y, z)));
+                let vertices = names.map(|v| {
+                    let v = (v & !NEGATIVE) as usize;
+                    let [x, y, z, _] = self.device.points[v];
+                    lens.vertex(Vec3::new(x, y, z), pixels[v])
+                });
                 let scalars = points.map(|p| p[3]);
                 let cell = lens.project_cell(&vertices, scalars, if names[0] & NEGATIVE == 0 { 1.0 } else { -1.0 });
                 if cell.kind == Kind::Hidden {
