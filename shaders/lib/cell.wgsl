@@ -50,13 +50,22 @@ fn cell_kind(z: vec4<f32>) -> f32 {
     return PLAIN;
 }
 
-// The vertex farthest from the eye.
-fn farthest_vertex(z: vec4<f32>) -> u32 {
-    var far = 0u;
-    for (var i = 1u; i < 4u; i++) {
-        if z[i] > z[far] {
-            far = i;
-        }
+// The vertex farthest from the eye, and its scalar. (Constant indices alone: others would move all vertices to memory.)
+struct Far {
+    vertex: Vertex,
+    scalar: f32,
+}
+
+fn farthest_vertex(v: array<Vertex, 4>, s: vec4<f32>) -> Far {
+    var far = Far(v[0], s.x);
+    if v[1].eye.z > far.vertex.eye.z {
+        far = Far(v[1], s.y);
+    }
+    if v[2].eye.z > far.vertex.eye.z {
+        far = Far(v[2], s.z);
+    }
+    if v[3].eye.z > far.vertex.eye.z {
+        far = Far(v[3], s.w);
     }
     return far;
 }
@@ -119,7 +128,7 @@ fn project_cell(v: array<Vertex, 4>, s: vec4<f32>, parity: f32) -> Cell {
         return cell;
     }
     if kind == DEEP {
-        let far = v[farthest_vertex(z)];
+        let far = farthest_vertex(v, s).vertex;
         cell.planes[0] = face_plane(v[1], v[2], v[3], -parity, far.eye.z, far);
         cell.planes[1] = face_plane(v[0], v[2], v[3], parity, far.eye.z, far);
         cell.planes[2] = face_plane(v[0], v[1], v[3], -parity, far.eye.z, far);
@@ -167,16 +176,15 @@ struct Reference {
 
 fn cell_reference(v: array<Vertex, 4>, s: vec4<f32>, kind: f32) -> Reference {
     var reference: Reference;
-    var origins = vec4<f32>(v[0].pixel, v[1].pixel);
-    var index = 0u;
+    var r = v[0];
+    reference.origins = vec4<f32>(v[0].pixel, v[1].pixel);
     reference.scalar = s.x;
     if kind == DEEP {
-        index = farthest_vertex(vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z));
-        origins = vec4<f32>(v[index].pixel, v[index].pixel);
-        reference.scalar = s[index];
+        let far = farthest_vertex(v, s);
+        r = far.vertex;
+        reference.origins = vec4<f32>(r.pixel, r.pixel);
+        reference.scalar = far.scalar;
     }
-    let r = v[index];
-    reference.origins = origins;
     reference.rest = r.rest;
     reference.depth = r.eye.z;
     reference.level = r.frame.z;

@@ -47,10 +47,24 @@ fn frame_of(position: vec3<f32>) -> vec3<f32> {
     return rotated((position - view.pivot_high.xyz) - view.pivot_low.xyz);
 }
 
-fn vertex(position: vec3<f32>, pixel: vec4<f32>) -> Vertex {
+// A point of the mesh as it is seen; the host finds it in double precision.
+struct Seen {
+    // Position in pixels from the picture's middle, rounded; of use only in front of the near plane.
+    pixel: vec2<f32>,
+    // What that leaves of it, as two signed shares of 2^-24 of it.
+    rest: u32,
+    // Depth from the eye.
+    depth: f32,
+}
+
+fn rest_of(seen: Seen) -> vec2<f32> {
+    return unpack2x16snorm(seen.rest) * (abs(seen.pixel) * 5.9604645e-8);
+}
+
+fn vertex(position: vec3<f32>, seen: Seen) -> Vertex {
     let frame = frame_of(position);
-    let eye = frame + vec3<f32>(view.right.w, view.down.w, view.forward.w);
-    return Vertex(position, frame, eye, pixel.xy, pixel.zw);
+    let aside = frame.xy + vec2<f32>(view.right.w, view.down.w);
+    return Vertex(position, frame, vec3<f32>(aside, seen.depth), seen.pixel, rest_of(seen));
 }
 
 // How much deeper b lies than a.

@@ -1,7 +1,7 @@
 // What is linear in a cell: luminance and, in w, extinction, classified at its vertices. Whatever the transfer function
 // does between the vertices' scalars is lost: the artifact that classification after interpolation avoids.
 import package::lib::view::{Vertex, rotated};
-import package::lib::cell::{Cell, Reference, DEEP, STEEPEST, farthest_vertex, rounded_by};
+import package::lib::cell::{Cell, Reference, STEEPEST, rounded_by};
 import package::lib::transfer::{piece_at, classify};
 
 alias Quantity = vec4<f32>;
@@ -37,11 +37,7 @@ fn linear_in(cell: Cell, reference: Reference, v: array<Vertex, 4>, s: vec4<f32>
         let rate = (c[1] - c[0]) * n1[i] + (c[2] - c[0]) * n2[i] + (c[3] - c[0]) * n3[i];
         linear[i] = clamp(rate, vec4<f32>(-STEEPEST), vec4<f32>(STEEPEST));
     }
-    var index = 0u;
-    if cell.gradient.w == DEEP {
-        index = farthest_vertex(vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z));
-    }
-    linear[3] = c[index];
+    linear[3] = quantity_of(reference.scalar);
     for (var k = 0u; k < 4u; k++) {
         linear[3][k] -= rounded_by(reference, vec2<f32>(linear[0][k], linear[1][k]));
     }

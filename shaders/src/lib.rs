@@ -27,7 +27,7 @@ macro_rules! modules {
 
 /// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
 pub const MODULES: &[(&str, &str)] = modules! {
-    lib { balanced cell flat lookup mesh mesh_buffers plane published ray segment silhouette span symmetric thick transfer view volume walk }
+    lib { balanced cell flat lookup mesh mesh_buffers plane published ray segment silhouette span symmetric thick transfer triangle view volume walk whole }
     data { cell point }
     geometry { balanced ray thick vicp }
     interpolation { perspective screen_linear }

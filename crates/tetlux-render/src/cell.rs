@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use crate::device_view::DeviceView;
 use crate::lens::{Lens, NUDGE};
+use crate::seen::Seen;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -59,10 +60,10 @@ const STEEPEST: f32 = 1e20;
 const EDGE_ON: f32 = 1e-6;
 
 impl Lens {
-    pub(crate) fn vertex(&self, position: Vec3, pixel: [f32; 4]) -> Vertex {
+    pub(crate) fn vertex(&self, position: Vec3, seen: &Seen) -> Vertex {
         let frame = self.frame_of(position);
-        let [x, y, rest_x, rest_y] = pixel;
-        Vertex { position, frame, eye: self.eye_of(frame), pixel: Vec2::new(x, y), rest: Vec2::new(rest_x, rest_y) }
+        let eye = self.eye_of(frame).with_z(seen.depth);
+        Vertex { position, frame, eye, pixel: Vec2::from(seen.pixel), rest: seen.rest_of() }
     }
 
     fn deeper(&self, a: &Vertex, b: &Vertex) -> f32 {

@@ -6,6 +6,7 @@ use tetlux_mesh::TetMesh;
 use tetlux_scene::View;
 
 use crate::device_mesh::DeviceMesh;
+use crate::seen::Seen;
 
 /// From device positions to eye space (x right, y down, z forward) and to pixels, in device units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,17 +54,14 @@ impl EyeSpace {
         [eye.x * scale + self.middle[0], eye.y * scale + self.middle[1]]
     }
 
-    /// Where the points of a mesh are seen, in pixels from the picture's middle: x and y rounded to single precision, and
-    /// what that leaves of them.
-    pub(crate) fn pixels(&self, mesh: &DeviceMesh) -> Vec<[f32; 4]> {
-        let split = |&[x, y, z, _]: &[f32; 4]| {
+    /// The points of a mesh as they are seen.
+    pub(crate) fn seen(&self, mesh: &DeviceMesh) -> Vec<Seen> {
+        let seen = |&[x, y, z, _]: &[f32; 4]| {
             let position = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
-            let [x, y] = self.pixel_of(self.frame(position) + self.offset);
-            let pixel = [x - self.middle[0], y - self.middle[1]];
-            let high = pixel.map(|p| p as f32);
-            let low: [f32; 2] = std::array::from_fn(|i| (pixel[i] - f64::from(high[i])) as f32);
-            [high[0], high[1], low[0], low[1]]
+            let eye = self.frame(position) + self.offset;
+            let at = self.pixel_of(eye);
+            Seen::new([at[0] - self.middle[0], at[1] - self.middle[1]], eye.z)
         };
-        mesh.points.par_iter().map(split).collect()
+        mesh.points.par_iter().map(seen).collect()
     }
 }

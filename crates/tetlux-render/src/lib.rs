@@ -47,6 +47,7 @@ mod march;
 mod model;
 mod order;
 mod resources;
+mod seen;
 mod stage;
 mod tables;
 mod tiles;
@@ -75,6 +76,7 @@ use crate::eye_space::EyeSpace;
 use crate::lens::Lens;
 use crate::look::Look;
 use crate::march::March;
+use crate::seen::Seen;
 
 /// A picture and the time it took.
 #[derive(Debug)]
@@ -103,6 +105,8 @@ struct Job<'a> {
     weights: Weights,
     /// What the scene asks for beyond one field's transfer function.
     look: Option<Look>,
+    /// The mesh's points as they are seen, for a graphics adapter.
+    seen: &'a [Seen],
     /// The cells to draw, nearest first.
     order: &'a [u32],
     /// Ranges of positions in `order`, ascending and apart, whose cells have no order among themselves: they are
@@ -213,9 +217,11 @@ impl Renderer {
         if plan.backend == Backend::Gpu && look.is_some() {
             return Err(RenderError::CpuOnly);
         }
+        let on_gpu = plan.backend == Backend::Gpu;
+        let seen = if on_gpu { stages.run("see", || eye.seen(&device_mesh)) } else { Vec::new() };
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
-            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
+            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &seen, &lens, &plan.cells, view.size)));
         let opaque = opaque(scene.method.max_error, &pieces, look.as_ref());
         let job = Job {
             mesh: &device_mesh,
@@ -225,6 +231,7 @@ impl Renderer {
             pieces: &pieces,
             weights,
             look,
+            seen: &seen,
             order: &cells,
             groups: &order.groups,
             entry_pieces: &entry_pieces,

@@ -95,7 +95,7 @@ impl<'a> Maker<'a> {
             Binding::Cells => self.filled("cells", bytemuck::cast_slice(&job.mesh.cells), storage),
             Binding::CellScalars => self.filled("cell scalars", bytemuck::cast_slice(&job.mesh.cell_scalars), storage),
             Binding::Order => self.filled("order", bytemuck::cast_slice(job.order), storage),
-            Binding::Pixels => self.filled("pixels", bytemuck::cast_slice(&job.eye.pixels(job.mesh)), storage),
+            Binding::Seen => self.filled("points as seen", bytemuck::cast_slice(job.seen), storage),
             Binding::EntryPieces => self.filled("pieces of cells", bytemuck::cast_slice(job.entry_pieces), storage),
         }
     }

@@ -38,8 +38,9 @@ pub(crate) const CELL_BYTES: u64 = 80;
 /// Bytes of a cell of balanced cell projection: `Balanced` of shaders/lib/balanced.wgsl.
 pub(crate) const BALANCED_BYTES: u64 = 32;
 
-/// The faces of a positively oriented cell, counter-clockwise from outside.
-const FACES: [u32; 12] = [1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1];
+/// The faces of a positively oriented cell, counter-clockwise from outside. Each has a first vertex of its own, which speaks
+/// for it (shaders/geometry/balanced.wgsl).
+const FACES: [u32; 12] = [1, 2, 3, 3, 2, 0, 0, 1, 3, 2, 1, 0];
 
 /// A buffer of bind group 0, numbered as its binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,7 +52,7 @@ pub(crate) enum Binding {
     CellScalars = 4,
     Order = 5,
     EntryPieces = 6,
-    Pixels = 7,
+    Seen = 7,
 }
 
 impl Variant {
@@ -174,9 +175,7 @@ impl Variant {
         if self.classification == Classification::PostClip {
             bindings.push(Binding::EntryPieces);
         }
-        if self.projection != CellProjection::March {
-            bindings.push(Binding::Pixels);
-        }
+        bindings.push(Binding::Seen);
         bindings
     }
 
