@@ -45,8 +45,11 @@ fn the_view() {
 
 #[test]
 fn a_point_as_seen() {
-    let ours =
-        named([("pixel", offset_of!(Seen, pixel)), ("rest", offset_of!(Seen, rest)), ("depth", offset_of!(Seen, depth))]);
+    let ours = named([
+        ("pixel", offset_of!(Seen, pixel)),
+        ("rest", offset_of!(Seen, rest)),
+        ("depth", offset_of!(Seen, depth)),
+    ]);
     assert_eq!(layout("Seen"), (ours, size_of::<Seen>()));
 }
 
@@ -63,6 +66,7 @@ fn the_batch() {
 #[test]
 fn a_projected_cell() {
     assert_eq!(layout("Cell").1 as u64, CELL_BYTES);
+    const { assert!(CELL_BYTES <= 80) }
 }
 
 #[test]

@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test's helpers fail and tell like the test")]
 
+mod combinations;
 mod device;
 mod functions;
 mod lookups;
 mod methods;
 mod pictures;
 mod thick;
+mod triangle;

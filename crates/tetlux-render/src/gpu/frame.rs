@@ -2,13 +2,11 @@
 
 use std::cell::Cell;
 
-use wgpu::util::DeviceExt;
-
 use super::Open;
 use super::picture::Picture;
 use super::pipelines::Pipelines;
 use super::stretch::{scissor, stretches};
-use super::tables::{Lookup, binding_of, upload};
+use super::tables;
 use super::variant::{Binding, CELL_BYTES, Geometry, Variant};
 use crate::{Job, Resources};
 
@@ -24,6 +22,10 @@ pub(crate) struct Batch {
     pub(crate) unused: [u32; 2],
 }
 
+/// Cells a batch at most: enough to occupy any device, and few enough that projected cells are a small part of what a
+/// large mesh takes.
+const LARGEST_BATCH: u32 = 1 << 18;
+
 /// Cells a batch: what one binding of projected cells, and one dispatch, can hold.
 fn batch_size(limits: &wgpu::Limits, geometry: &Geometry) -> u32 {
     let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
@@ -31,12 +33,15 @@ fn batch_size(limits: &wgpu::Limits, geometry: &Geometry) -> u32 {
     let dispatch = limits.max_compute_workgroups_per_dimension.saturating_mul(WORKGROUP);
     // The vertices of a draw call are numbered in 32 bits.
     let cells = u32::try_from(bytes / geometry.bytes.max(index_bytes)).unwrap_or(u32::MAX);
-    cells.min(dispatch).clamp(1, u32::MAX / geometry.indices.map_or(geometry.vertices, |i| i.len() as u32))
+    cells
+        .min(dispatch)
+        .min(LARGEST_BATCH)
+        .clamp(1, u32::MAX / geometry.indices.map_or(geometry.vertices, |i| i.len() as u32))
 }
 
 /// Makes buffers and counts them.
 pub(super) struct Maker<'a> {
-    device: &'a wgpu::Device,
+    pub(super) device: &'a wgpu::Device,
     made: Cell<Resources>,
 }
 
@@ -62,7 +67,18 @@ impl<'a> Maker<'a> {
         // Bindings may not be empty.
         let contents = if contents.is_empty() { &[0; 16] } else { contents };
         self.count(1, 0, contents.len() as u64);
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: (contents.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
+            usage,
+            mapped_at_creation: true,
+        });
+        // Without memory, or on a device that is lost, there is nothing to fill, and an error is on its way.
+        if let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
+            mapped.slice(..contents.len()).copy_from_slice(contents);
+        }
+        buffer.unmap();
+        buffer
     }
 
     fn empty(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
@@ -101,25 +117,6 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// The bind group of the tables, made.
-fn tables(make: &Maker, queue: &wgpu::Queue, layout: &wgpu::BindGroupLayout, job: &Job) -> wgpu::BindGroup {
-    let mut lookup = Lookup { low: [[0.0; 4]; 2], range: [[1.0; 4]; 2], length: [job.table_length, 0.0, 0.0, 0.0] };
-    let textures: Vec<_> = job
-        .tables
-        .iter()
-        .map(|table| {
-            let (texture, bytes) = upload(make.device, queue, table, job.table_precision, &mut lookup);
-            make.count(0, 1, bytes);
-            (binding_of(table), texture.create_view(&wgpu::TextureViewDescriptor::default()))
-        })
-        .collect();
-    let lookup = make.filled("lookup", bytemuck::bytes_of(&lookup), wgpu::BufferUsages::UNIFORM);
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    let textures = textures.iter().map(|(binding, view)| entry(*binding, wgpu::BindingResource::TextureView(view)));
-    let entries: Vec<_> = [entry(0, lookup.as_entire_binding())].into_iter().chain(textures).collect();
-    make.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("tables"), layout, entries: &entries })
-}
-
 /// Draws the picture; `groups` are the pipelines of cells without an order, if there are any. The error is what the driver
 /// said.
 pub(super) fn draw(
@@ -129,7 +126,7 @@ pub(super) fn draw(
     groups: Option<&Pipelines>,
     job: &Job,
 ) -> Result<(Vec<[f32; 4]>, Resources), String> {
-    let Open { device, queue } = open;
+    let Open { device, queue, .. } = open;
     let cells = job.order.len() as u32;
     let pipeline_count = pipelines.count() + groups.map_or(0, Pipelines::count);
     let made = Resources { pipelines: pipeline_count, cells: job.order.len(), ..Resources::default() };
@@ -138,7 +135,7 @@ pub(super) fn draw(
     let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
     let scene = make.bind(&pipelines.scene, &scene);
 
-    let tables = pipelines.tables.as_ref().map(|layout| tables(&make, queue, layout, job));
+    let tables = pipelines.tables.as_ref().map(|layout| tables::bind(&make, queue, layout, job));
 
     let geometry = variant.geometry();
     let batch = batch_size(&device.limits(), &geometry).min(cells.max(1));

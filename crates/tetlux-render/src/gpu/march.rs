@@ -5,6 +5,7 @@ use wgpu::{BindingType, BufferBindingType, ShaderStages};
 use super::Open;
 use super::frame::Maker;
 use super::picture::Picture;
+use super::tables;
 use super::variant::{Binding, Variant};
 use crate::march::March;
 use crate::{Job, RenderError, Resources};
@@ -25,7 +26,10 @@ pub(crate) struct Limits {
 pub(super) struct Marcher {
     pipeline: wgpu::ComputePipeline,
     scene: wgpu::BindGroupLayout,
-    tables: wgpu::BindGroupLayout,
+    /// Where rays come in, and the picture.
+    entries: wgpu::BindGroupLayout,
+    /// Tables of integrals, if there are any.
+    tables: Option<wgpu::BindGroupLayout>,
 }
 
 impl Marcher {
@@ -54,10 +58,11 @@ impl Marcher {
         let of = |binding| (binding as u32, if binding == Binding::View { uniform } else { storage });
         let scene: Vec<_> = variant.bindings().into_iter().map(of).collect();
         let scene = layout("scene", &scene);
-        let tables = layout("march", &[(0, uniform), (1, storage), (2, storage), (3, storage), (4, picture)]);
+        let entries = layout("march", &[(0, uniform), (1, storage), (2, storage), (3, storage), (4, picture)]);
+        let tables = tables::layout(device, &variant, ShaderStages::COMPUTE);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
-            bind_group_layouts: &[Some(&scene), Some(&tables)],
+            bind_group_layouts: &[Some(&scene), Some(&entries), tables.as_ref()][..2 + usize::from(tables.is_some())],
             immediate_size: 0,
         });
         let constants = [("ORTHOGRAPHIC", f64::from(u8::from(variant.orthographic)))];
@@ -69,7 +74,7 @@ impl Marcher {
             compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             cache: None,
         });
-        Ok(Marcher { pipeline, scene, tables })
+        Ok(Marcher { pipeline, scene, entries, tables })
     }
 
     /// Makes the picture; the error is what the driver said.
@@ -80,11 +85,12 @@ impl Marcher {
         job: &Job,
         march: &March,
     ) -> Result<(Vec<[f32; 4]>, Resources), String> {
-        let Open { device, queue } = open;
+        let Open { device, queue, .. } = open;
         let make = Maker::new(device, Resources { pipelines: 1, cells: job.order.len(), ..Resources::default() });
         let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b as u32, make.scene(b, job))).collect();
         let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding, buffer)).collect();
         let scene = make.bind(&self.scene, &scene);
+        let tables = self.tables.as_ref().map(|layout| tables::bind(&make, queue, layout, job));
         let steps = u32::try_from(job.order.len()).unwrap_or(u32::MAX);
         let limits = Limits { opaque: job.opaque, steps, unused: [0; 2] };
         let storage = wgpu::BufferUsages::STORAGE;
@@ -103,16 +109,19 @@ impl Marcher {
         let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding);
         let resources = resources.chain([wgpu::BindingResource::TextureView(&view)]);
         let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
-        let tables = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let entries = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("march"),
-            layout: &self.tables,
+            layout: &self.entries,
             entries: &entries,
         });
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &scene, &[]);
-        pass.set_bind_group(1, &tables, &[]);
+        pass.set_bind_group(1, &entries, &[]);
+        if let Some(tables) = &tables {
+            pass.set_bind_group(2, tables, &[]);
+        }
         let [columns, rows] = job.size.map(|n| n.div_ceil(WORKGROUP));
         pass.dispatch_workgroups(columns, rows, 1);
         drop(pass);
