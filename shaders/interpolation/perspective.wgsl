@@ -5,6 +5,9 @@ import package::lib::view::{view, ORTHOGRAPHIC};
 import package::lib::span::{Segment};
 import package::lib::thick::{front_of, back_of, thickness};
 
+// Beside edges, where a rasteriser may take one triangle for another, the planes of the faces tell the same.
+const BY_PLANES = true;
+
 // What is interpolated of a value at a point of that inverse depth.
 fn carried(value: Quantity, inverse_depth: f32) -> Quantity {
     return value * inverse_depth;

@@ -8,3 +8,9 @@ struct Balanced {
     // The scalar at the opposite face, times the inverse depth there if perspective.
     scalars: vec4<f32>,
 }
+
+// A bit for each front face.
+fn balanced_fronts(balanced: Balanced) -> u32 {
+    let bits = select(vec4<u32>(0u), vec4<u32>(1u, 2u, 4u, 8u), balanced.distances < vec4<f32>(0.0));
+    return bits.x | bits.y | bits.z | bits.w;
+}

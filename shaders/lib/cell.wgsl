@@ -9,10 +9,15 @@
 // ones keep their thickness in single precision. The ray is inside between the least w of the front faces' planes and
 // the greatest w of the back faces'. Nothing is interpolated over triangles, so nothing depends on how a rasteriser
 // rounds vertices.
-import package::lib::view::{View, Vertex, view, ORTHOGRAPHIC};
+//
+// A cell may be a thousandth of the mesh wide and a thousandth of that thick: what it is made of are differences of the
+// mesh's own positions, which are exact to their last digit, and the difference of a pixel from the vertex that the
+// cell's planes have their origin at, of which the host knows the last digits.
+import package::lib::view::{View, Vertex, view, ORTHOGRAPHIC, rotated, deeper};
 
 struct Cell {
-    // The plane of the face opposite each vertex: (dw/dx, dw/dy, w at the plane's origin pixel, +1 front or -1 back).
+    // The plane of the face opposite each vertex: (dw/dx, dw/dy, w at the plane's origin, +1 front or -1 back). An origin
+    // is a vertex's pixel as rounded to single precision.
     // Vertices are in ascending order of their index in the mesh. Planes 1, 2 and 3 have their origin at vertex 0,
     // plane 0 at vertex 1 -- the lowest vertex of each -- so that both cells at a face compute the same bits.
     planes: array<vec4<f32>, 4>,
@@ -57,13 +62,23 @@ fn cell_kind(z: vec4<f32>) -> f32 {
     return PLAIN;
 }
 
-// The vertex farthest from the eye.
-fn farthest_vertex(z: vec4<f32>) -> u32 {
-    var far = 0u;
-    for (var i = 1u; i < 4u; i++) {
-        if z[i] > z[far] {
-            far = i;
-        }
+// The vertex farthest from the eye, which of the four it is, and its scalar. (Constant indices alone: others would move all vertices to memory.)
+struct Far {
+    vertex: Vertex,
+    index: u32,
+    scalar: f32,
+}
+
+fn farthest_vertex(v: array<Vertex, 4>, s: vec4<f32>) -> Far {
+    var far = Far(v[0], 0u, s.x);
+    if v[1].eye.z > far.vertex.eye.z {
+        far = Far(v[1], 1u, s.y);
+    }
+    if v[2].eye.z > far.vertex.eye.z {
+        far = Far(v[2], 2u, s.z);
+    }
+    if v[3].eye.z > far.vertex.eye.z {
+        far = Far(v[3], 3u, s.w);
     }
     return far;
 }
@@ -91,10 +106,11 @@ fn face_normal(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
 }
 
 // Plane of the face a, b, c, its vertices in ascending order of index; `inward` is +1 if (b-a) x (c-a) points into the
-// cell and -1 if out of it; `depth` is that of w = 0; the third component is w at the pixel of `origin`, less
+// cell and -1 if out of it; `depth` is that of w = 0; the third component is w at the rounded pixel of `origin`, less
 // that of `origin` itself.
 fn face_plane(a: Vertex, b: Vertex, c: Vertex, inward: f32, depth: f32, origin: Vertex) -> vec4<f32> {
-    let n = face_normal(a.frame, b.frame, c.frame);
+    let normal = face_normal(a.position, b.position, c.position);
+    let n = rotated(normal);
     // Positive if the eye is on the side that n points away from.
     var side = dot(n, a.eye);
     let reach = max(max(abs(a.eye), abs(b.eye)), abs(c.eye));
@@ -111,7 +127,8 @@ fn face_plane(a: Vertex, b: Vertex, c: Vertex, inward: f32, depth: f32, origin: 
     let divisor = max(select(abs(side), 1e-12 * scale, edge_on), 1e-30);
     let toward = select(-1.0, 1.0, side >= 0.0);
     let slope = clamp(n.xy * (rise * toward / divisor), vec2<f32>(-STEEPEST), vec2<f32>(STEEPEST));
-    let offset = dot(n, origin.frame - a.frame) * toward / divisor + select(0.0, dot(slope, NUDGE), edge_on);
+    let aside = select(vec2<f32>(0.0), NUDGE, edge_on) - origin.rest;
+    let offset = dot(normal, origin.position - a.position) * toward / divisor + dot(slope, aside);
     return vec4<f32>(slope, clamp(offset, -STEEPEST, STEEPEST), toward * inward);
 }
 
@@ -124,7 +141,7 @@ fn project_cell(v: array<Vertex, 4>, s: vec4<f32>, parity: f32) -> Cell {
         return cell;
     }
     if kind == DEEP {
-        let far = v[farthest_vertex(z)];
+        let far = farthest_vertex(v, s).vertex;
         cell.planes[0] = face_plane(v[1], v[2], v[3], -parity, far.eye.z, far);
         cell.planes[1] = face_plane(v[0], v[2], v[3], parity, far.eye.z, far);
         cell.planes[2] = face_plane(v[0], v[1], v[3], -parity, far.eye.z, far);
@@ -135,28 +152,32 @@ fn project_cell(v: array<Vertex, 4>, s: vec4<f32>, parity: f32) -> Cell {
         cell.planes[2] = face_plane(v[0], v[1], v[3], -parity, z.x, v[0]);
         cell.planes[3] = face_plane(v[0], v[1], v[2], parity, z.x, v[0]);
         // Plane 0 does not hold vertex 0: its origin is its own lowest vertex, where its depth is known.
-        let step = v[0].frame.z - v[1].frame.z;
+        let step = deeper(v[1], v[0]);
         if ORTHOGRAPHIC {
             cell.planes[0].z += step;
         } else {
             cell.planes[0].z += step / v[1].eye.z;
         }
     }
-    let e1 = v[1].frame - v[0].frame;
-    let e2 = v[2].frame - v[0].frame;
-    let e3 = v[3].frame - v[0].frame;
+    let e1 = v[1].position - v[0].position;
+    let e2 = v[2].position - v[0].position;
+    let e3 = v[3].position - v[0].position;
     let volume = dot(e1, cross(e2, e3));
     let inverse = select(-1.0, 1.0, volume >= 0.0) / max(abs(volume), 1e-30);
     let sum = (s.y - s.x) * cross(e2, e3) + (s.z - s.x) * cross(e3, e1) + (s.w - s.x) * cross(e1, e2);
-    let gradient = clamp(sum * inverse, vec3<f32>(-STEEPEST), vec3<f32>(STEEPEST));
+    let gradient = clamp(rotated(sum * inverse), vec3<f32>(-STEEPEST), vec3<f32>(STEEPEST));
     cell.gradient = vec4<f32>(gradient, kind);
     return cell;
 }
 
 // What a ray needs of a cell besides its planes and gradient.
 struct Reference {
-    // Pixels at which planes 1 to 3, and plane 0, have their origin.
+    // Which of the four vertices it is.
+    index: u32,
+    // Pixels at which planes 1 to 3, and plane 0, have their origin: those of vertices, rounded.
     origins: vec4<f32>,
+    // What the reference vertex's has been rounded by.
+    rest: vec2<f32>,
     // Depth of the reference vertex, its depth from the pivot, which keeps its digits however far away the eye is, and
     // its scalar.
     depth: f32,
@@ -169,27 +190,34 @@ struct Reference {
 }
 
 fn cell_reference(v: array<Vertex, 4>, s: vec4<f32>, kind: f32) -> Reference {
-    // In the frame of the pivot, where depths keep their digits however far away the eye is.
-    let z = vec4<f32>(v[0].frame.z, v[1].frame.z, v[2].frame.z, v[3].frame.z);
-    let farthest = max(max(z.x, z.y), max(z.z, z.w));
-    let nearest = max(min(min(z.x, z.y), min(z.z, z.w)), view.near - view.forward.w);
     var reference: Reference;
-    var origins = vec4<f32>(v[0].pixel, v[1].pixel);
-    var index = 0u;
+    var r = v[0];
+    reference.origins = vec4<f32>(v[0].pixel, v[1].pixel);
     reference.scalar = s.x;
     if kind == DEEP {
-        index = farthest_vertex(vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z));
-        origins = vec4<f32>(v[index].pixel, v[index].pixel);
-        reference.scalar = s[index];
+        let far = farthest_vertex(v, s);
+        r = far.vertex;
+        reference.index = far.index;
+        reference.origins = vec4<f32>(r.pixel, r.pixel);
+        reference.scalar = far.scalar;
     }
-    reference.origins = origins;
-    reference.depth = v[index].eye.z;
-    reference.level = z[index];
-    let range = vec2<f32>(farthest, nearest);
-    reference.w = z[index] - range;
+    reference.rest = r.rest;
+    reference.depth = r.eye.z;
+    reference.level = r.frame.z;
+    // How much nearer than the reference vertex: the farthest of all, and the nearest beyond the near plane.
+    let z = vec4<f32>(deeper(v[0], r), deeper(v[1], r), deeper(v[2], r), deeper(v[3], r));
+    let farthest = min(min(z.x, z.y), min(z.z, z.w));
+    let nearest = min(max(max(z.x, z.y), max(z.z, z.w)), r.eye.z - view.near);
+    reference.w = vec2<f32>(farthest, nearest);
     if !ORTHOGRAPHIC {
-        reference.w /= max(range + view.forward.w, vec2<f32>(view.near));
+        reference.w /= max(r.eye.z - reference.w, vec2<f32>(view.near));
     }
     reference.s = vec2<f32>(min(min(s.x, s.y), min(s.z, s.w)), max(max(s.x, s.y), max(s.z, s.w)));
     return reference;
+}
+
+// By how much a value of that rate across the view, a unit of length, exceeds at the reference vertex what it is at the
+// pixel that this has been rounded to.
+fn rounded_by(reference: Reference, rate: vec2<f32>) -> f32 {
+    return dot(rate, reference.rest) * view.pixel * select(reference.depth, 1.0, ORTHOGRAPHIC);
 }

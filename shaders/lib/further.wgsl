@@ -1,30 +1,27 @@
 // A field in a cell, as lib::cell has the first scalar.
-import package::lib::view::{Vertex};
-import package::lib::cell::{Cell, Corners, DEEP, STEEPEST, farthest_vertex};
+import package::lib::view::{rotated};
+import package::lib::cell::{Corners, Reference, STEEPEST, rounded_by};
 
 struct Field {
-    // Gradient in eye space and, in w, the value at the cell's reference vertex.
+    // Gradient in eye space and, in w, the value at the reference vertex's depth and rounded pixel.
     rise: vec4<f32>,
     // Least and greatest value.
     range: vec2<f32>,
 }
 
 // The field of these values at the corners.
-fn field_in(cell: Cell, c: Corners, values: vec4<f32>) -> Field {
+fn field_in(reference: Reference, c: Corners, values: vec4<f32>) -> Field {
     let v = c.vertices;
-    let e1 = v[1].frame - v[0].frame;
-    let e2 = v[2].frame - v[0].frame;
-    let e3 = v[3].frame - v[0].frame;
+    let e1 = v[1].position - v[0].position;
+    let e2 = v[2].position - v[0].position;
+    let e3 = v[3].position - v[0].position;
     let volume = dot(e1, cross(e2, e3));
     let inverse = select(-1.0, 1.0, volume >= 0.0) / max(abs(volume), 1e-30);
     let d = values.yzw - values.x;
-    let gradient = (d.x * cross(e2, e3) + d.y * cross(e3, e1) + d.z * cross(e1, e2)) * inverse;
-    var index = 0u;
-    if cell.gradient.w == DEEP {
-        index = farthest_vertex(vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z));
-    }
+    let gradient = rotated((d.x * cross(e2, e3) + d.y * cross(e3, e1) + d.z * cross(e1, e2)) * inverse);
+    let rise = clamp(gradient, vec3<f32>(-STEEPEST), vec3<f32>(STEEPEST));
     var field: Field;
-    field.rise = vec4<f32>(clamp(gradient, vec3<f32>(-STEEPEST), vec3<f32>(STEEPEST)), values[index]);
+    field.rise = vec4<f32>(rise, values[reference.index] - rounded_by(reference, rise.xy));
     field.range = vec2<f32>(
         min(min(values.x, values.y), min(values.z, values.w)),
         max(max(values.x, values.y), max(values.z, values.w)),

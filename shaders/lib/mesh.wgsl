@@ -1,7 +1,7 @@
 // The cells of one draw call.
-import package::lib::view::{vertex};
+import package::lib::view::{Seen, vertex};
 import package::lib::cell::{Corners};
-import package::lib::mesh_buffers::{points, cells};
+import package::lib::mesh_buffers::{points, cells, seen};
 import package::axes::data::{scalars_of};
 
 // The cells to draw, nearest first.
@@ -21,6 +21,24 @@ fn entry_of(i: u32) -> u32 {
     return batch.last - i;
 }
 
+// What is seen of a cell's corners, and no more.
+struct SeenCorners {
+    points: array<Seen, 4>,
+    scalars: vec4<f32>,
+    parity: f32,
+}
+
+fn seen_corners(i: u32) -> SeenCorners {
+    let index = order[entry_of(i)];
+    var names = cells[index];
+    var corners: SeenCorners;
+    corners.parity = select(1.0, -1.0, (names.x & 0x80000000u) != 0u);
+    names.x &= 0x7fffffffu;
+    corners.points = array<Seen, 4>(seen[names.x], seen[names.y], seen[names.z], seen[names.w]);
+    corners.scalars = scalars_of(index, names);
+    return corners;
+}
+
 // The i-th cell of the batch.
 fn corners(i: u32) -> Corners {
     let index = order[entry_of(i)];
@@ -29,7 +47,7 @@ fn corners(i: u32) -> Corners {
     corners.parity = select(1.0, -1.0, (names.x & 0x80000000u) != 0u);
     names.x &= 0x7fffffffu;
     for (var k = 0u; k < 4u; k++) {
-        corners.vertices[k] = vertex(points[names[k]].xyz);
+        corners.vertices[k] = vertex(points[names[k]].xyz, seen[names[k]]);
     }
     corners.scalars = scalars_of(index, names);
     corners.cell = index;

@@ -21,19 +21,30 @@ const WIDEST = 8192.0;
 const NARROWEST = 1.0;
 const SHORTEST = 0.01;
 
+// What is interpolated over triangles is drawn larger by this many pixels alone, and what is narrower is not interpolated.
+const SLIGHT = 0.0078125;
+const NARROW = 0.25;
+
 struct Outline {
     corners: array<vec2<f32>, 4>,
+    // Their vertices.
+    names: vec4<u32>,
     // 3 or 4; 0 if the faces are all front or all back, as rounding can make those of a sliver.
     count: u32,
 }
 
-fn outline(cell: Cell, v: array<Vertex, 4>) -> Outline {
+// A bit for each front face.
+fn fronts_of(cell: Cell) -> u32 {
     var fronts = 0u;
     for (var i = 0u; i < 4u; i++) {
         if cell.planes[i].w > 0.0 {
             fronts |= 1u << i;
         }
     }
+    return fronts;
+}
+
+fn outline(fronts: u32, p: array<vec2<f32>, 4>) -> Outline {
     var result: Outline;
     let count = countOneBits(fronts);
     if count == 2u {
@@ -42,7 +53,8 @@ fn outline(cell: Cell, v: array<Vertex, 4>) -> Outline {
         let b = firstLeadingBit(fronts);
         let c = firstTrailingBit(~fronts & 15u);
         let d = firstLeadingBit(~fronts & 15u);
-        result.corners = array<vec2<f32>, 4>(v[a].pixel, v[c].pixel, v[b].pixel, v[d].pixel);
+        result.names = vec4<u32>(a, c, b, d);
+        result.corners = array<vec2<f32>, 4>(p[a], p[c], p[b], p[d]);
         result.count = 4u;
     } else if count == 1u || count == 3u {
         // The one face that looks the other way; the vertex opposite lies before or behind it.
@@ -50,10 +62,42 @@ fn outline(cell: Cell, v: array<Vertex, 4>) -> Outline {
         let a = select(0u, 1u, face == 0u);
         let b = select(1u, 2u, face <= 1u);
         let c = select(2u, 3u, face <= 2u);
-        result.corners = array<vec2<f32>, 4>(v[a].pixel, v[b].pixel, v[c].pixel, v[c].pixel);
+        result.names = vec4<u32>(a, b, c, c);
+        result.corners = array<vec2<f32>, 4>(p[a], p[b], p[c], p[c]);
         result.count = 3u;
     }
     return result;
+}
+
+// Twice the signed area.
+fn outline_area(o: Outline) -> f32 {
+    let diagonal = o.corners[2] - o.corners[0];
+    return cross2(o.corners[1] - o.corners[0], diagonal) + cross2(diagonal, o.corners[3] - o.corners[0]);
+}
+
+// Whether the corners of an outline can be moved outwards one by one; `extent` is its longest diameter.
+fn is_movable(o: Outline, extent: f32, narrowest: f32) -> bool {
+    if o.count == 0u || extent > WIDEST {
+        return false;
+    }
+    let closing = distance(o.corners[3], o.corners[0]);
+    let last = select(closing, distance(o.corners[2], o.corners[3]), o.count == 4u);
+    let first = min(distance(o.corners[0], o.corners[1]), distance(o.corners[1], o.corners[2]));
+    return abs(outline_area(o)) >= narrowest * extent && min(first, min(last, closing)) >= SHORTEST;
+}
+
+// Corner i moved outwards.
+fn moved_corner(o: Outline, i: u32, margin: f32) -> vec2<f32> {
+    let before = select(i, o.count, i == 0u) - 1u;
+    let after = select(i + 1u, 0u, i + 1u == o.count);
+    return moved_out(o.corners[before], o.corners[i], o.corners[after], margin * sign(outline_area(o)));
+}
+
+// The longest diameter of an outline.
+fn outline_extent(o: Outline) -> f32 {
+    let diagonals = max(distance(o.corners[0], o.corners[2]), distance(o.corners[1], o.corners[3]));
+    let sides = max(distance(o.corners[0], o.corners[1]), distance(o.corners[1], o.corners[2]));
+    return max(diagonals, max(sides, max(distance(o.corners[2], o.corners[3]), distance(o.corners[3], o.corners[0]))));
 }
 
 // Corner k, 0 to 3 in cyclic order, of what is drawn, in pixels from the picture's middle.
@@ -76,23 +120,11 @@ fn silhouette_corner(cell: Cell, v: array<Vertex, 4>, k: u32) -> vec2<f32> {
         let high = max(max(v[0].pixel, v[1].pixel), max(v[2].pixel, v[3].pixel));
         return boxed(vec4<f32>(low, high), k);
     }
-    let o = outline(cell, v);
-    if o.count == 0u {
+    let o = outline(fronts_of(cell), array<vec2<f32>, 4>(v[0].pixel, v[1].pixel, v[2].pixel, v[3].pixel));
+    if !is_movable(o, extent, NARROWEST) {
         return oblong(v, axis, extent, k);
     }
-    // Twice the signed area.
-    let diagonal = o.corners[2] - o.corners[0];
-    let area = cross2(o.corners[1] - o.corners[0], diagonal) + cross2(diagonal, o.corners[3] - o.corners[0]);
-    var shortest = extent;
-    for (var i = 0u; i < o.count; i++) {
-        shortest = min(shortest, distance(o.corners[i], o.corners[(i + 1u) % o.count]));
-    }
-    if abs(area) < NARROWEST * extent || shortest < SHORTEST {
-        return oblong(v, axis, extent, k);
-    }
-    let i = min(k, o.count - 1u);
-    let before = o.corners[(i + o.count - 1u) % o.count];
-    return moved_out(before, o.corners[i], o.corners[(i + 1u) % o.count], MARGIN * sign(area));
+    return moved_corner(o, min(k, o.count - 1u), MARGIN);
 }
 
 // The corner `at` between two others, both its edges moved outwards; `outward` has the sign of the outline's area.

@@ -6,19 +6,20 @@
 // over one pixel: that of the thick vertex, where a ray is inside the cell for longest. A vertex and the opposite face
 // (classes 1a and 1b), or two opposite edges (class 2). An A_i of zero joins the larger simplex: a vertex over an edge, or
 // over a vertex, is class 1 with triangles of no area. The triangles are a fan around the thick vertex.
-import package::lib::view::{Vertex, view, ORTHOGRAPHIC};
+import package::lib::view::{Vertex, view, ORTHOGRAPHIC, deeper, pixels_between};
 import package::lib::cell::{Cell, Corners, DEEP, cell_kind, project_cell};
-import package::lib::silhouette::{cross2};
+import package::lib::silhouette::{Outline, NARROW, cross2, is_movable, outline_extent};
 import package::axes::quantity::{Quantity, quantity_of, packed};
 import package::axes::shading::{pieces_between};
 
 // Kind of a cell that is decomposed, as stored in gradient.w. Those that reach over the near plane, or far in depth, are
-// not: their vertices lie so far from the picture that interpolation over it would lose its digits. They keep their
-// planes, and fragments find their segments as in lib::ray.
+// not: their vertices lie so far from the picture that interpolation over it would lose its digits. Nor are those that are
+// seen so narrow that their corners cannot be moved outwards. They keep their planes, and fragments find their segments as
+// in lib::ray.
 const THICK = 3.0;
 
 // A thick cell as it is stored, in the place of a Cell:
-//   planes[0]  the thick vertex: its pixel and its ends
+//   planes[0]  the thick vertex: its pixel from vertex 0's, and its ends
 //   planes[1]  the quantity at its front end
 //   planes[2]  the quantity at its back end
 //   planes[3]  outer vertices, two bits each, and their number; the first and the last piece
@@ -79,11 +80,11 @@ fn point_over(c: Corners, area: vec4<f32>, members: u32) -> Point {
         if (members >> i & 1u) == 1u {
             let share = abs(area[i]) / total;
             let v = c.vertices[i];
-            var w = c.vertices[0].frame.z - v.frame.z;
+            var w = deeper(v, c.vertices[0]);
             if !ORTHOGRAPHIC {
                 w /= v.eye.z;
             }
-            point.pixel += (v.pixel - c.vertices[0].pixel) * share;
+            point.pixel += pixels_between(c.vertices[0], v) * share;
             point.w += w * share;
             // Linear in the picture is the quantity over depth.
             let part = select(share * (1.0 + w), share, ORTHOGRAPHIC);
@@ -95,7 +96,19 @@ fn point_over(c: Corners, area: vec4<f32>, members: u32) -> Point {
     return point;
 }
 
-// The cell decomposed, or its planes if it is too close to the eye.
+// The outline of a decomposed cell.
+fn thick_outline(outer: u32, count: u32, v: array<Vertex, 4>) -> Outline {
+    var o: Outline;
+    o.count = count;
+    for (var i = 0u; i < 4u; i++) {
+        let k = outer >> (2u * min(i, count - 1u)) & 3u;
+        o.names[i] = k;
+        o.corners[i] = v[k].pixel;
+    }
+    return o;
+}
+
+// The cell decomposed, or its planes if it is too close to the eye or seen too narrow.
 fn decompose(c: Corners, entry: u32) -> Cell {
     let v = c.vertices;
     let z = vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z);
@@ -103,9 +116,9 @@ fn decompose(c: Corners, entry: u32) -> Cell {
         return project_cell(v, c.scalars, c.parity);
     }
     var cell: Cell;
-    let e1 = v[1].pixel - v[0].pixel;
-    let e2 = v[2].pixel - v[0].pixel;
-    let e3 = v[3].pixel - v[0].pixel;
+    let e1 = pixels_between(v[0], v[1]);
+    let e2 = pixels_between(v[0], v[2]);
+    let e3 = pixels_between(v[0], v[3]);
     let area = vec4<f32>(cross2(e3 - e1, e2 - e1), cross2(e2, e3), cross2(e3, e1), cross2(e1, e2));
     var plus = 0u;
     var minus = 0u;
@@ -137,6 +150,10 @@ fn decompose(c: Corners, entry: u32) -> Cell {
         outer = firstTrailingBit(first) | firstTrailingBit(second) << 2u
             | firstLeadingBit(first) << 4u | firstLeadingBit(second) << 6u;
     }
+    let o = thick_outline(outer, count, v);
+    if !is_movable(o, outline_extent(o), NARROW) {
+        return project_cell(v, c.scalars, c.parity);
+    }
     let over_first = point_over(c, area, first);
     let over_second = point_over(c, area, second);
     var front = over_first;
@@ -151,7 +168,7 @@ fn decompose(c: Corners, entry: u32) -> Cell {
     }
     let s = c.scalars;
     let pieces = pieces_between(min(min(s.x, s.y), min(s.z, s.w)), max(max(s.x, s.y), max(s.z, s.w)), entry);
-    cell.planes[0] = vec4<f32>(v[0].pixel + over_first.pixel, ends);
+    cell.planes[0] = vec4<f32>(over_first.pixel, ends);
     cell.planes[1] = packed(front.quantity);
     cell.planes[2] = packed(back.quantity);
     cell.planes[3] = vec4<f32>(f32(outer), f32(count), vec2<f32>(pieces));

@@ -26,19 +26,55 @@ struct View {
 @group(0) @binding(0) var<uniform> view: View;
 
 struct Vertex {
+    // As the mesh has it: differences of these are exact to their own last digit.
+    position: vec3<f32>,
     // Position relative to the pivot, in the axes of eye space.
     frame: vec3<f32>,
     // Position in eye space.
     eye: vec3<f32>,
-    // Position in pixels from the picture's middle; of use only in front of the near plane.
+    // Position in pixels from the picture's middle, as two summands; of use only in front of the near plane.
     pixel: vec2<f32>,
+    rest: vec2<f32>,
 }
 
-fn vertex(position: vec3<f32>) -> Vertex {
-    let p = (position - view.pivot_high.xyz) - view.pivot_low.xyz;
-    let frame = vec3<f32>(dot(view.right.xyz, p), dot(view.down.xyz, p), dot(view.forward.xyz, p));
-    let eye = frame + vec3<f32>(view.right.w, view.down.w, view.forward.w);
-    return Vertex(frame, eye, pixel_of(eye));
+// A direction of the mesh in the axes of eye space.
+fn rotated(direction: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(dot(view.right.xyz, direction), dot(view.down.xyz, direction), dot(view.forward.xyz, direction));
+}
+
+// A position relative to the pivot, in the axes of eye space.
+fn frame_of(position: vec3<f32>) -> vec3<f32> {
+    return rotated((position - view.pivot_high.xyz) - view.pivot_low.xyz);
+}
+
+// A point of the mesh as it is seen; the host finds it in double precision.
+struct Seen {
+    // Position in pixels from the picture's middle, rounded; of use only in front of the near plane.
+    pixel: vec2<f32>,
+    // What that leaves of it, as two signed shares of 2^-24 of it.
+    rest: u32,
+    // Depth from the eye.
+    depth: f32,
+}
+
+fn rest_of(seen: Seen) -> vec2<f32> {
+    return unpack2x16snorm(seen.rest) * (abs(seen.pixel) * 5.9604645e-8);
+}
+
+fn vertex(position: vec3<f32>, seen: Seen) -> Vertex {
+    let frame = frame_of(position);
+    let aside = frame.xy + vec2<f32>(view.right.w, view.down.w);
+    return Vertex(position, frame, vec3<f32>(aside, seen.depth), seen.pixel, rest_of(seen));
+}
+
+// How much deeper b lies than a.
+fn deeper(a: Vertex, b: Vertex) -> f32 {
+    return dot(view.forward.xyz, b.position - a.position);
+}
+
+// From a to b in pixels.
+fn pixels_between(a: Vertex, b: Vertex) -> vec2<f32> {
+    return (b.pixel - a.pixel) + (b.rest - a.rest);
 }
 
 fn pixel_of(eye: vec3<f32>) -> vec2<f32> {

@@ -1,12 +1,13 @@
 // What is linear in a cell: luminance and, in w, extinction, classified at its vertices. Whatever the transfer function
 // does between the vertices' scalars is lost: the artifact that classification after interpolation avoids.
-import package::lib::cell::{Cell, Corners, Reference, DEEP, STEEPEST, farthest_vertex};
+import package::lib::view::{rotated};
+import package::lib::cell::{Cell, Corners, Reference, STEEPEST, rounded_by};
 import package::axes::data::{CELLWISE, scalar_of};
 import package::axes::attributes::{attributes_of};
 
 alias Quantity = vec4<f32>;
 
-// The derivatives by x, y and z, and the value at the reference vertex.
+// The derivatives by x, y and z, and the value at the reference vertex's depth and rounded pixel.
 alias Linear = array<vec4<f32>, 4>;
 
 fn quantity_of(scalar: f32, name: u32) -> Quantity {
@@ -45,24 +46,23 @@ fn linear_in(cell: Cell, reference: Reference, corners: Corners) -> Linear {
         quantity_of(s.z, names.z),
         quantity_of(s.w, names.w),
     );
-    let e1 = v[1].frame - v[0].frame;
-    let e2 = v[2].frame - v[0].frame;
-    let e3 = v[3].frame - v[0].frame;
+    let e1 = v[1].position - v[0].position;
+    let e2 = v[2].position - v[0].position;
+    let e3 = v[3].position - v[0].position;
     let volume = dot(e1, cross(e2, e3));
     let inverse = select(-1.0, 1.0, volume >= 0.0) / max(abs(volume), 1e-30);
-    let n1 = cross(e2, e3) * inverse;
-    let n2 = cross(e3, e1) * inverse;
-    let n3 = cross(e1, e2) * inverse;
+    let n1 = rotated(cross(e2, e3) * inverse);
+    let n2 = rotated(cross(e3, e1) * inverse);
+    let n3 = rotated(cross(e1, e2) * inverse);
     var linear: Linear;
     for (var i = 0u; i < 3u; i++) {
         let rate = (c[1] - c[0]) * n1[i] + (c[2] - c[0]) * n2[i] + (c[3] - c[0]) * n3[i];
         linear[i] = clamp(rate, vec4<f32>(-STEEPEST), vec4<f32>(STEEPEST));
     }
-    var index = 0u;
-    if cell.gradient.w == DEEP {
-        index = farthest_vertex(vec4<f32>(v[0].eye.z, v[1].eye.z, v[2].eye.z, v[3].eye.z));
+    linear[3] = quantity_of(reference.scalar, names[reference.index]);
+    for (var k = 0u; k < 4u; k++) {
+        linear[3][k] -= rounded_by(reference, vec2<f32>(linear[0][k], linear[1][k]));
     }
-    linear[3] = c[index];
     return linear;
 }
 

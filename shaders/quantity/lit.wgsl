@@ -1,6 +1,6 @@
 // What is linear in a cell: one scalar or two, and the gradient that is the normal of light. In space, not in the picture:
 // normals are right in perspective.
-import package::lib::cell::{Cell, Reference, Corners};
+import package::lib::cell::{Cell, Reference, Corners, rounded_by};
 import package::lib::further::{Field, field_in, field_at};
 import package::lib::gradients::{gradients};
 import package::axes::data::{CELLWISE, scalar_of};
@@ -40,9 +40,9 @@ fn linear_in(cell: Cell, reference: Reference, c: Corners) -> Linear {
         gradients[c.names.w],
     ));
     var linear: Linear;
-    linear.scalar = Field(vec4<f32>(cell.gradient.xyz, reference.scalar), reference.s);
-    linear.second = field_in(cell, c, seconds_of(c.cell, c.names));
-    linear.gradient = array<Field, 3>(field_in(cell, c, g[0]), field_in(cell, c, g[1]), field_in(cell, c, g[2]));
+    linear.scalar = Field(vec4<f32>(cell.gradient.xyz, reference.scalar - rounded_by(reference, cell.gradient.xy)), reference.s);
+    linear.second = field_in(reference, c, seconds_of(c.cell, c.names));
+    linear.gradient = array<Field, 3>(field_in(reference, c, g[0]), field_in(reference, c, g[1]), field_in(reference, c, g[2]));
     return linear;
 }
 

@@ -1,5 +1,5 @@
 // What is linear in a cell: two scalars. They are classified after they have been interpolated.
-import package::lib::cell::{Cell, Reference, Corners};
+import package::lib::cell::{Cell, Reference, Corners, rounded_by};
 import package::lib::further::{Field, field_in, field_at};
 import package::axes::data::{CELLWISE, scalar_of};
 import package::axes::second::{SECOND_CELLWISE, seconds_of, second_of};
@@ -29,8 +29,8 @@ fn in_cell(value: Quantity, cell: u32) -> Quantity {
 }
 
 fn linear_in(cell: Cell, reference: Reference, c: Corners) -> Linear {
-    let scalar = Field(vec4<f32>(cell.gradient.xyz, reference.scalar), reference.s);
-    return Linear(scalar, field_in(cell, c, seconds_of(c.cell, c.names)));
+    let scalar = Field(vec4<f32>(cell.gradient.xyz, reference.scalar - rounded_by(reference, cell.gradient.xy)), reference.s);
+    return Linear(scalar, field_in(reference, c, seconds_of(c.cell, c.names)));
 }
 
 fn linear_at(linear: Linear, depth: f32, across: vec2<f32>, direction: vec3<f32>, scaled: f32) -> Quantity {

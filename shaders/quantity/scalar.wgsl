@@ -1,10 +1,11 @@
 // What is linear in a cell: the scalar. It is classified after it has been interpolated.
-import package::lib::cell::{Cell, Corners, Reference};
+import package::lib::cell::{Cell, Corners, Reference, rounded_by};
 import package::axes::data::{CELLWISE, scalar_of};
 
 alias Quantity = f32;
 
-// The gradient and, in w, the value at the reference vertex; the least and the greatest value. The rest is unused.
+// The gradient and, in w, the value at the reference vertex's depth and rounded pixel; the least and the greatest value. The
+// rest is unused.
 alias Linear = array<vec4<f32>, 4>;
 
 fn quantity_of(scalar: f32, name: u32) -> Quantity {
@@ -35,7 +36,7 @@ fn unpacked(stored: vec4<f32>) -> Quantity {
 
 fn linear_in(cell: Cell, reference: Reference, c: Corners) -> Linear {
     return Linear(
-        vec4<f32>(cell.gradient.xyz, reference.scalar),
+        vec4<f32>(cell.gradient.xyz, reference.scalar - rounded_by(reference, cell.gradient.xy)),
         vec4<f32>(reference.s, 0.0, 0.0),
         vec4<f32>(0.0),
         vec4<f32>(0.0),

@@ -29,8 +29,8 @@ macro_rules! modules {
 pub const MODULES: &[(&str, &str)] = modules! {
     lib {
         balanced cell erf flat further gradients image integrated light lit_linear look lookup mesh mesh_buffers plane
-        published ray segment silhouette span spent symmetric thick transfer two_fields view volume walk widget
-        widget_tables widgets
+        published ray segment silhouette span spent symmetric thick transfer triangle two_fields view volume walk whole
+        widget widget_tables widgets
     }
     attributes { classified given }
     data { cell point }

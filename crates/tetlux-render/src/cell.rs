@@ -5,13 +5,25 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use crate::lens::{Lens, NUDGE, Vertex};
+use crate::device_view::DeviceView;
+use crate::lens::{Lens, NUDGE};
+use crate::seen::Seen;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Hidden,
     Plain,
     Deep,
+}
+
+/// A vertex in eye space and in pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex {
+    position: Vec3,
+    frame: Vec3,
+    eye: Vec3,
+    pixel: Vec2,
+    rest: Vec2,
 }
 
 /// The planes of the faces and the gradient of the scalar.
@@ -25,6 +37,7 @@ pub(crate) struct Cell {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reference {
     origins: [Vec2; 2],
+    rest: Vec2,
     depth: f32,
     /// Depth of the reference vertex from the pivot, which keeps its digits however far away the eye is.
     level: f32,
@@ -47,6 +60,16 @@ const STEEPEST: f32 = 1e20;
 const EDGE_ON: f32 = 1e-6;
 
 impl Lens {
+    pub(crate) fn vertex(&self, position: Vec3, seen: &Seen) -> Vertex {
+        let frame = self.frame_of(position);
+        let eye = self.eye_of(frame).with_z(seen.depth);
+        Vertex { position, frame, eye, pixel: Vec2::from(seen.pixel), rest: seen.rest_of() }
+    }
+
+    fn deeper(&self, a: &Vertex, b: &Vertex) -> f32 {
+        DeviceView::axis(self.view.forward).dot(b.position - a.position)
+    }
+
     fn cell_kind(&self, z: [f32; 4]) -> Kind {
         let (nearest, farthest) = bounds(z);
         if farthest <= self.view.near {
@@ -59,7 +82,8 @@ impl Lens {
     }
 
     fn face_plane(&self, [a, b, c]: [&Vertex; 3], inward: f32, depth: f32, origin: &Vertex) -> Vec4 {
-        let n = face_normal(a.frame, b.frame, c.frame);
+        let normal = face_normal(a.position, b.position, c.position);
+        let n = self.rotated(normal);
         let (side, scale, rise) = if self.orthographic {
             (n.z, n.x.abs() + n.y.abs(), self.view.pixel)
         } else {
@@ -71,7 +95,8 @@ impl Lens {
         let toward = if side >= 0.0 { 1.0 } else { -1.0 };
         let limit = |x: f32| x.clamp(-STEEPEST, STEEPEST);
         let slope = (n.truncate() * (rise * toward / divisor)).map(limit);
-        let offset = n.dot(origin.frame - a.frame) * toward / divisor + if edge_on { slope.dot(NUDGE) } else { 0.0 };
+        let aside = (if edge_on { NUDGE } else { Vec2::ZERO }) - origin.rest;
+        let offset = normal.dot(origin.position - a.position) * toward / divisor + slope.dot(aside);
         Vec4::new(slope.x, slope.y, limit(offset), toward * inward)
     }
 
@@ -90,33 +115,31 @@ impl Lens {
             self.face_plane([&v[0], &v[1], &v[2]], parity, depth, reference),
         ];
         if kind == Kind::Plain {
-            let step = v[0].frame.z - v[1].frame.z;
+            let step = self.deeper(&v[1], &v[0]);
             planes[0].z += if self.orthographic { step } else { step / v[1].eye.z };
         }
-        let e: [Vec3; 3] = std::array::from_fn(|i| v[i + 1].frame - v[0].frame);
+        let e: [Vec3; 3] = std::array::from_fn(|i| v[i + 1].position - v[0].position);
         let volume = e[0].dot(e[1].cross(e[2]));
         let inverse = (if volume >= 0.0 { 1.0 } else { -1.0 }) / volume.abs().max(1e-30);
         let sum =
             (s[1] - s[0]) * e[1].cross(e[2]) + (s[2] - s[0]) * e[2].cross(e[0]) + (s[3] - s[0]) * e[0].cross(e[1]);
-        let gradient = (sum * inverse).clamp(Vec3::splat(-STEEPEST), Vec3::splat(STEEPEST));
+        let gradient = self.rotated(sum * inverse).clamp(Vec3::splat(-STEEPEST), Vec3::splat(STEEPEST));
         Cell { planes, gradient, kind }
     }
 
     pub(crate) fn cell_reference(&self, v: &[Vertex; 4], s: [f32; 4], kind: Kind) -> Reference {
-        let z = v.map(|vertex| vertex.frame.z);
-        let offset = self.view.forward[3];
-        let (nearest, farthest) = bounds(z);
         let far = farthest_vertex(v.map(|vertex| vertex.eye.z));
         let (index, other) = if kind == Kind::Deep { (far, far) } else { (0, 1) };
-        let w = [farthest, nearest.max(self.view.near - offset)].map(|range| {
-            let step = z[index] - range;
-            if self.orthographic { step } else { step / (range + offset).max(self.view.near) }
-        });
+        let r = &v[index];
+        let (farthest, nearest) = bounds(v.map(|vertex| self.deeper(&vertex, r)));
+        let w = [farthest, nearest.min(r.eye.z - self.view.near)]
+            .map(|z| if self.orthographic { z } else { z / (r.eye.z - z).max(self.view.near) });
         let (low, high) = bounds(s);
         Reference {
             origins: [v[index].pixel, v[other].pixel],
-            depth: v[index].eye.z,
-            level: z[index],
+            rest: r.rest,
+            depth: r.eye.z,
+            level: r.frame.z,
             scalar: s[index],
             w,
             s: [low, high],
@@ -143,14 +166,17 @@ impl Lens {
         }
         let across = from[0] * self.view.pixel;
         let gradient = cell.gradient;
+        let rounded_by = gradient.truncate().dot(reference.rest) * self.view.pixel;
+        let rounded_by = rounded_by * if self.orthographic { 1.0 } else { reference.depth };
+        let scalar = reference.scalar - rounded_by;
         let in_plane = gradient.truncate().dot(across);
         let (length, s, depth) = if self.orthographic {
-            let s = [front, back].map(|w| reference.scalar + in_plane - w * gradient.z);
+            let s = [front, back].map(|w| scalar + in_plane - w * gradient.z);
             (front - back, s, reference.level - 0.5 * (front + back))
         } else {
             let direction = (at * self.view.pixel).extend(1.0);
             let along = gradient.dot(direction);
-            let s = [front, back].map(|w| reference.scalar + reference.depth * (in_plane - w / (1.0 + w) * along));
+            let s = [front, back].map(|w| scalar + reference.depth * (in_plane - w / (1.0 + w) * along));
             let closer = front / (1.0 + front) + back / (1.0 + back);
             let length = direction.length() * reference.depth * (front - back) / ((1.0 + front) * (1.0 + back));
             (length, s, reference.level - 0.5 * reference.depth * closer)

@@ -34,7 +34,23 @@ pub enum RenderError {
         /// The adapter's name.
         adapter: String,
     },
-    /// The driver reported an error: out of memory, or a lost device.
+    /// The device is gone: the driver was reset or removed, or it has crashed.
+    #[error("{adapter} was lost ({reason}): render again, which opens it anew, or use the CPU back end")]
+    Lost {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver said.
+        reason: String,
+    },
+    /// The device has not the memory that the picture takes.
+    #[error("{adapter} is out of memory ({reason}): make the picture or the mesh smaller, or use the CPU back end")]
+    OutOfMemory {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver said.
+        reason: String,
+    },
+    /// The driver reported another error.
     #[error("{adapter} failed: {reason}")]
     Device {
         /// The adapter's name.

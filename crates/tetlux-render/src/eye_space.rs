@@ -1,10 +1,12 @@
 //! The view in double precision, for the set-up of cells.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use tetlux_mesh::TetMesh;
 use tetlux_scene::View;
 
 use crate::device_mesh::DeviceMesh;
+use crate::seen::Seen;
 
 /// From device positions to eye space (x right, y down, z forward) and to pixels, in device units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,5 +83,16 @@ impl EyeSpace {
             }
         }
         bounds
+    }
+
+    /// The points of a mesh as they are seen.
+    pub(crate) fn seen(&self, mesh: &DeviceMesh) -> Vec<Seen> {
+        let seen = |&[x, y, z, _]: &[f32; 4]| {
+            let position = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+            let eye = self.frame(position) + self.offset;
+            let at = self.pixel_of(eye);
+            Seen::new([at[0] - self.middle[0], at[1] - self.middle[1]], eye.z)
+        };
+        mesh.points.par_iter().map(seen).collect()
     }
 }

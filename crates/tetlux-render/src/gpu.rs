@@ -32,7 +32,10 @@ pub(crate) struct Gpu {
     adapter: wgpu::Adapter,
     device: Device,
     driver: String,
-    open: OnceLock<Open>,
+    /// What is asked of the adapter, of what it has.
+    features: wgpu::Features,
+    limits: wgpu::Limits,
+    open: Mutex<Option<Arc<Open>>>,
     pipelines: Made<Pipelines>,
     marchers: Made<Marcher>,
 }
@@ -44,6 +47,8 @@ type Made<T> = Mutex<HashMap<Variant, Arc<T>>>;
 struct Open {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    /// Why the device is gone, once it is.
+    lost: Arc<OnceLock<String>>,
 }
 
 /// What a picture came to.
@@ -73,22 +78,23 @@ impl Gpu {
             (!adapter.features().contains(wgpu::Features::FLOAT32_BLENDABLE), kind)
         };
         let adapter = adapters.into_iter().min_by_key(rank)?;
+        let limits = adapter.limits();
+        Some(Gpu::new(adapter, FEATURES, limits))
+    }
+
+    /// An adapter of which no more is asked than these features, if it has them, and limits.
+    fn new(adapter: wgpu::Adapter, features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
+        let features = features & FEATURES & adapter.features();
         let info = adapter.get_info();
         let device = Device {
             name: format!("{} ({})", info.name, info.backend),
             software: info.device_type == wgpu::DeviceType::Cpu,
-            blends_f32: adapter.features().contains(wgpu::Features::FLOAT32_BLENDABLE),
-            norm16: adapter.features().contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM),
+            blends_f32: features.contains(wgpu::Features::FLOAT32_BLENDABLE),
+            norm16: features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM),
         };
         let driver = format!("{} {}", info.driver, info.driver_info);
-        Some(Gpu {
-            adapter,
-            device,
-            driver,
-            open: OnceLock::new(),
-            pipelines: Mutex::default(),
-            marchers: Mutex::default(),
-        })
+        let (open, pipelines, marchers) = (Mutex::default(), Mutex::default(), Mutex::default());
+        Gpu { adapter, device, driver, features, limits, open, pipelines, marchers }
     }
 
     pub(crate) fn device(&self) -> &Device {
@@ -101,13 +107,7 @@ impl Gpu {
 
     /// Draws a picture.
     pub(crate) fn draw(&self, plan: &Plan, job: &Job, stages: &mut Stages) -> Result<Drawn, RenderError> {
-        let open = match self.open.get() {
-            Some(open) => open,
-            None => {
-                let open = stages.run("open device", || self.open())?;
-                self.open.get_or_init(|| open)
-            }
-        };
+        let open = &*self.opened(stages)?;
         let look = job.look.as_ref().map(LookVariant::new);
         let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty(), look, job.backdrop.is_some());
         self.check_limits(open, &variant, job)?;
@@ -125,19 +125,39 @@ impl Gpu {
             let draw = || frame::draw(open, &variant, &cells, groups.as_deref(), job);
             stages.run("draw", || self.checked(open, draw))?
         };
-        drawn.map_err(|e| self.failed(e))
+        drawn.map_err(|e| self.failed(open, e))
+    }
+
+    /// The device, opened if it was not, or anew if it is lost.
+    fn opened(&self, stages: &mut Stages) -> Result<Arc<Open>, RenderError> {
+        let mut known = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(open) = known.as_ref().filter(|open| open.lost.get().is_none()) {
+            return Ok(open.clone());
+        }
+        // What was made on a device that is lost is lost with it.
+        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        self.marchers.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        let open = Arc::new(stages.run("open device", || self.open())?);
+        *known = Some(open.clone());
+        Ok(open)
     }
 
     fn open(&self) -> Result<Open, RenderError> {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("tetlux"),
-            required_features: self.adapter.features() & FEATURES,
-            required_limits: self.adapter.limits(),
+            required_features: self.features,
+            required_limits: self.limits.clone(),
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(self.adapter.request_device(&descriptor))
             .map_err(|e| RenderError::Open { adapter: self.device.name.clone(), reason: e.to_string() })?;
-        Ok(Open { device, queue })
+        let lost = Arc::new(OnceLock::new());
+        let told = lost.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            // The first reason counts.
+            let _ = told.set(format!("{reason:?}: {message}").trim_end_matches([':', ' ']).to_string());
+        });
+        Ok(Open { device, queue, lost })
     }
 
     /// Runs work on the device and turns what the driver reports into an error.
@@ -148,13 +168,27 @@ impl Gpu {
         // Scopes end in the reverse order of their beginning.
         let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
         match errors.collect::<Vec<_>>().first() {
-            Some(error) => Err(self.failed(error.to_string())),
+            Some(error) => Err(self.reported(open, error)),
             None => Ok(result),
         }
     }
 
-    fn failed(&self, reason: String) -> RenderError {
-        RenderError::Device { adapter: self.device.name.clone(), reason }
+    fn reported(&self, open: &Open, error: &wgpu::Error) -> RenderError {
+        match error {
+            wgpu::Error::OutOfMemory { source } if open.lost.get().is_none() => {
+                RenderError::OutOfMemory { adapter: self.device.name.clone(), reason: source.to_string() }
+            }
+            error => self.failed(open, error.to_string()),
+        }
+    }
+
+    /// What the driver said, or that the device is gone: then all else that went wrong follows from it.
+    fn failed(&self, open: &Open, reason: String) -> RenderError {
+        let adapter = self.device.name.clone();
+        match open.lost.get() {
+            Some(reason) => RenderError::Lost { adapter, reason: reason.clone() },
+            None => RenderError::Device { adapter, reason },
+        }
     }
 
     fn check_limits(&self, open: &Open, variant: &Variant, job: &Job) -> Result<(), RenderError> {
@@ -170,6 +204,7 @@ impl Gpu {
             ("the mesh's points", size_of_val(&job.mesh.points[..]) as u64, "bytes", binding),
             ("the mesh's cells", size_of_val(&job.mesh.cells[..]) as u64, "bytes", binding),
             ("the vertices' luminance and extinction", size_of_val(job.attributes) as u64, "bytes", binding),
+            ("the points as they are seen", size_of_val(job.seen) as u64, "bytes", binding),
             ("the transfer function", size_of_val(job.pieces) as u64, "bytes", binding),
             ("the gradients or the image", job.look.as_ref().map_or(0, look::largest), "bytes", binding),
             ("the order of the cells", size_of_val(job.order) as u64, "bytes", binding),
@@ -201,3 +236,6 @@ fn made<T>(
     all.lock().unwrap_or_else(PoisonError::into_inner).insert(variant, made.clone());
     Ok(made)
 }
+
+#[cfg(test)]
+mod tests;

@@ -11,6 +11,7 @@ use crate::gpu::look::LookUniform;
 use crate::gpu::march::Limits;
 use crate::gpu::tables::Lookup;
 use crate::gpu::variant::{BALANCED_BYTES, CELL_BYTES};
+use crate::seen::Seen;
 
 /// (member, offset) of a structure of the drawing stage, and its size.
 fn layout(structure: &str) -> (Vec<(String, usize)>, usize) {
@@ -45,6 +46,16 @@ fn the_view() {
 }
 
 #[test]
+fn a_point_as_seen() {
+    let ours = named([
+        ("pixel", offset_of!(Seen, pixel)),
+        ("rest", offset_of!(Seen, rest)),
+        ("depth", offset_of!(Seen, depth)),
+    ]);
+    assert_eq!(layout("Seen"), (ours, size_of::<Seen>()));
+}
+
+#[test]
 fn the_batch() {
     let ours = named([
         ("last", offset_of!(Batch, last)),
@@ -57,6 +68,7 @@ fn the_batch() {
 #[test]
 fn a_projected_cell() {
     assert_eq!(layout("Cell").1 as u64, CELL_BYTES);
+    const { assert!(CELL_BYTES <= 80) }
 }
 
 #[test]
@@ -111,8 +123,8 @@ fn the_limits_of_a_march() {
     assert_eq!(layout_in("stages::march", "March"), (ours, size_of::<Limits>()));
 }
 
-/// Position and scalar of the four vertices, which are pulled from the mesh; the face opposite goes without saying.
-const PULLED_FLOATS: u64 = 4 * 4;
+/// What is seen of the four vertices and their scalars, which are pulled; the face opposite goes without saying.
+const PULLED_FLOATS: u64 = 4 * (size_of::<Seen>() as u64 / 4 + 1);
 
 #[test]
 fn a_balanced_cell_moves_at_most_as_much_as_published() {

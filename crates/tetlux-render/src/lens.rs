@@ -1,4 +1,4 @@
-//! From positions to eye space and pixels in single precision: the twin of shaders/lib/view.wgsl.
+//! From positions to eye space and pixels in single precision: with `cell.rs` the twin of shaders/lib/view.wgsl.
 
 use glam::{Vec2, Vec3};
 
@@ -14,22 +14,18 @@ pub(crate) struct Lens {
     pub(crate) orthographic: bool,
 }
 
-/// A vertex in eye space and in pixels.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Vertex {
-    pub(crate) frame: Vec3,
-    pub(crate) eye: Vec3,
-    pub(crate) pixel: Vec2,
-}
-
 impl Lens {
-    pub(crate) fn vertex(&self, position: Vec3) -> Vertex {
-        let view = &self.view;
-        let p = (position - DeviceView::axis(view.pivot_high)) - DeviceView::axis(view.pivot_low);
-        let rows = [view.right, view.down, view.forward];
-        let frame = Vec3::from(rows.map(|row| DeviceView::axis(row).dot(p)));
-        let eye = frame + Vec3::from(rows.map(|row| row[3]));
-        Vertex { frame, eye, pixel: self.pixel_of(eye) }
+    pub(crate) fn rotated(&self, direction: Vec3) -> Vec3 {
+        Vec3::from([self.view.right, self.view.down, self.view.forward].map(|row| DeviceView::axis(row).dot(direction)))
+    }
+
+    pub(crate) fn frame_of(&self, position: Vec3) -> Vec3 {
+        self.rotated((position - DeviceView::axis(self.view.pivot_high)) - DeviceView::axis(self.view.pivot_low))
+    }
+
+    /// A position in eye space from one relative to the pivot.
+    pub(crate) fn eye_of(&self, frame: Vec3) -> Vec3 {
+        frame + Vec3::from([self.view.right, self.view.down, self.view.forward].map(|row| row[3]))
     }
 
     pub(crate) fn pixel_of(&self, eye: Vec3) -> Vec2 {

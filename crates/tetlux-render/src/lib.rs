@@ -52,6 +52,7 @@ mod model;
 mod order;
 mod published;
 mod resources;
+mod seen;
 mod stage;
 mod tables;
 mod tiles;
@@ -84,6 +85,7 @@ use crate::lens::Lens;
 use crate::look::Look;
 use crate::march::March;
 use crate::published::Published;
+use crate::seen::Seen;
 
 /// A picture and the time it took.
 #[derive(Debug)]
@@ -114,6 +116,8 @@ struct Job<'a> {
     attributes: &'a [[f32; 4]],
     /// What the scene asks for beyond one field's transfer function.
     look: Option<Look>,
+    /// The mesh's points as they are seen, for a graphics adapter.
+    seen: &'a [Seen],
     /// The cells to draw, nearest first.
     order: &'a [u32],
     /// Ranges of positions in `order`, ascending and apart, whose cells have no order among themselves: they are
@@ -242,9 +246,11 @@ impl Renderer {
         let on_cpu = attributes.as_ref().filter(|_| plan.backend == Backend::Cpu);
         let look =
             Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), on_cpu, extinction, published, across)?;
+        let on_gpu = plan.backend == Backend::Gpu;
+        let seen = if on_gpu { stages.run("see", || eye.seen(&device_mesh)) } else { Vec::new() };
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
-        let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
-            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
+        let march = (on_gpu && plan.projection == CellProjection::March)
+            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &seen, &lens, &plan.cells, view.size)));
         let backdrop = (!scene.surfaces.is_empty())
             .then(|| stages.run("surfaces", || Backdrop::new(&scene.surfaces, &eye, device_mesh.scale, view.size)));
         let opaque = opaque(scene.method.max_error, &pieces, look.as_ref(), backdrop.as_ref());
@@ -257,6 +263,7 @@ impl Renderer {
             weights,
             attributes: attributes.as_ref().map_or(&[], |attributes| &attributes.values),
             look,
+            seen: &seen,
             order: &cells,
             groups: &order.groups,
             entry_pieces: &entry_pieces,

@@ -87,8 +87,7 @@ named! {
         /// View-independent cell projection: front faces drawn, the back end found in the fragment: Weiler, Kraus, Merz
         /// and Ertl 2003.
         Vicp,
-        /// Distances to the faces and scalars there, found at the vertices and interpolated: Moreland and Angel 2004. Off by
-        /// what rasterisers round vertices by, 1/256 of a pixel.
+        /// Distances to the faces and scalars there, found at the vertices and interpolated: Moreland and Angel 2004.
         Balanced,
         /// Every pixel walks along its ray from cell to cell; needs no order and no blending: Garrity 1990; Weiler, Kraus,
         /// Merz and Ertl 2003.
@@ -376,12 +375,6 @@ impl Method {
                 self.interpolation
             ));
         }
-        if self.integrator.uses_table() {
-            return Some(format!(
-                "projection \"march\" binds no tables: use average, linear, direct or symmetric instead of --integrator {}",
-                self.integrator
-            ));
-        }
         if self.classification == Classification::PostClip {
             return Some(
                 "projection \"march\" meets each cell once, and classification \"post-clip\" draws it once a piece: use \
@@ -481,6 +474,7 @@ mod tests {
         let march = Method { projection: CellProjection::March, ..Method::default() };
         assert_eq!(march.refusal(), None);
         assert_eq!(Method { order: Order::None, target: Target::Rgba32f, ..march }.refusal(), None);
+        assert_eq!(Method { integrator: Integrator::PreintQ, ..march }.refusal(), None);
         for (method, named) in [
             (Method { order: Order::Centroid, ..march }, "needs no order: leave out --order centroid"),
             (Method { target: Target::Rgba8, ..march }, "--target rgba8"),

@@ -5,7 +5,7 @@ use crate::{CellProjection, Classification, Integrator, Interpolation, TablePrec
 pub(crate) fn of_projection(projection: CellProjection) -> &'static str {
     match projection {
         CellProjection::Auto | CellProjection::Pt => "a compute stage projects each cell once",
-        CellProjection::Balanced => "distances and scalars found at vertices, off by what vertices are rounded by",
+        CellProjection::Balanced => "distances and scalars found at vertices, and interpolated",
         CellProjection::March => "every pixel walks from cell to cell, without order or blending",
         CellProjection::Vicp => "front faces are drawn, fragments find the back end",
         CellProjection::Gator => "the vertex stage projects each cell, once for every vertex of its triangles",

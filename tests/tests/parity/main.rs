@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test's helpers fail and tell like the test")]
 
+mod combinations;
 mod device;
 mod functions;
 mod lookups;
@@ -9,4 +10,5 @@ mod methods;
 mod pictures;
 mod published;
 mod thick;
+mod triangle;
 mod two_fields;

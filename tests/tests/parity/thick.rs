@@ -26,7 +26,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var k = 0u; k < 4u; k++) {
         let at = 16u * i + 4u * k;
         let eye = bitcast<vec3<f32>>(vec3<u32>(inputs[at], inputs[at + 1u], inputs[at + 2u]));
-        c.vertices[k] = Vertex(eye, eye, pixel_of(eye));
+        c.vertices[k] = Vertex(eye, eye, eye, pixel_of(eye), vec2<f32>(0.0));
         c.scalars[k] = bitcast<f32>(inputs[at + 3u]);
     }
     let cell = decompose(c, 0u);

@@ -2,15 +2,13 @@
 
 use std::cell::Cell;
 
-use wgpu::util::DeviceExt;
-
 use super::look;
 use super::picture::Picture;
 use super::pipelines::Pipelines;
 use super::spent::{Count, counters};
 use super::stretch::{scissor, stretches};
 use super::surfaces;
-use super::tables::{LAYERS, Lookup, binding_of, upload, upload_layers};
+use super::tables;
 use super::variant::{Binding, CELL_BYTES, Geometry, Variant};
 use super::{Drawn, Open};
 use crate::{Job, Resources};
@@ -27,6 +25,10 @@ pub(crate) struct Batch {
     pub(crate) unused: [u32; 2],
 }
 
+/// Cells a batch at most: enough to occupy any device, and few enough that projected cells are a small part of what a
+/// large mesh takes.
+const LARGEST_BATCH: u32 = 1 << 18;
+
 /// Cells a batch: what one binding of projected cells, and one dispatch, can hold.
 fn batch_size(limits: &wgpu::Limits, geometry: &Geometry) -> u32 {
     let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
@@ -34,12 +36,15 @@ fn batch_size(limits: &wgpu::Limits, geometry: &Geometry) -> u32 {
     let dispatch = limits.max_compute_workgroups_per_dimension.saturating_mul(WORKGROUP);
     // The vertices of a draw call are numbered in 32 bits.
     let cells = u32::try_from(bytes / geometry.bytes.max(index_bytes)).unwrap_or(u32::MAX);
-    cells.min(dispatch).clamp(1, u32::MAX / geometry.indices.map_or(geometry.vertices, |i| i.len() as u32))
+    cells
+        .min(dispatch)
+        .min(LARGEST_BATCH)
+        .clamp(1, u32::MAX / geometry.indices.map_or(geometry.vertices, |i| i.len() as u32))
 }
 
 /// Makes buffers and counts them.
 pub(super) struct Maker<'a> {
-    device: &'a wgpu::Device,
+    pub(super) device: &'a wgpu::Device,
     made: Cell<Resources>,
 }
 
@@ -65,7 +70,18 @@ impl<'a> Maker<'a> {
         // Bindings may not be empty.
         let contents = if contents.is_empty() { &[0; 16] } else { contents };
         self.count(1, 0, contents.len() as u64);
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: (contents.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
+            usage,
+            mapped_at_creation: true,
+        });
+        // Without memory, or on a device that is lost, there is nothing to fill, and an error is on its way.
+        if let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
+            mapped.slice(..contents.len()).copy_from_slice(contents);
+        }
+        buffer.unmap();
+        buffer
     }
 
     pub(super) fn empty(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
@@ -101,6 +117,7 @@ impl<'a> Maker<'a> {
             Binding::Cells => self.filled("cells", bytemuck::cast_slice(&job.mesh.cells), storage),
             Binding::CellScalars => self.filled("cell scalars", bytemuck::cast_slice(&job.mesh.cell_scalars), storage),
             Binding::Order => self.filled("order", bytemuck::cast_slice(job.order), storage),
+            Binding::Seen => self.filled("points as seen", bytemuck::cast_slice(job.seen), storage),
             Binding::EntryPieces => self.filled("pieces of cells", bytemuck::cast_slice(job.entry_pieces), storage),
             Binding::Spent => counters(self),
             Binding::Seconds | Binding::Gradients | Binding::Look | Binding::Widgets | Binding::Texels => {
@@ -113,31 +130,6 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// The bind group of the tables, made.
-fn tables(make: &Maker, queue: &wgpu::Queue, layout: &wgpu::BindGroupLayout, job: &Job) -> wgpu::BindGroup {
-    let mut lookup = Lookup { low: [[0.0; 4]; 2], range: [[1.0; 4]; 2], length: [job.table_length, 0.0, 0.0, 0.0] };
-    let view = |binding, (texture, bytes): (wgpu::Texture, u64)| {
-        make.count(0, 1, bytes);
-        (binding, texture.create_view(&wgpu::TextureViewDescriptor::default()))
-    };
-    let textures: Vec<_> = match job.tables {
-        // Those of several widgets.
-        [first, others @ ..] if !others.is_empty() && job.tables.iter().all(|table| table.axes().len() == 2) => {
-            let layers = upload_layers(make.device, queue, first, others, job.table_precision, &mut lookup);
-            vec![view(LAYERS, layers)]
-        }
-        tables => {
-            let mut one = |table| upload(make.device, queue, table, job.table_precision, &mut lookup);
-            tables.iter().map(|table| view(binding_of(table), one(table))).collect()
-        }
-    };
-    let lookup = make.filled("lookup", bytemuck::bytes_of(&lookup), wgpu::BufferUsages::UNIFORM);
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    let textures = textures.iter().map(|(binding, view)| entry(*binding, wgpu::BindingResource::TextureView(view)));
-    let entries: Vec<_> = [entry(0, lookup.as_entire_binding())].into_iter().chain(textures).collect();
-    make.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("tables"), layout, entries: &entries })
-}
-
 /// Draws the picture; `groups` are the pipelines of cells without an order, if there are any. The error is what the driver
 /// said.
 pub(super) fn draw(
@@ -147,7 +139,7 @@ pub(super) fn draw(
     groups: Option<&Pipelines>,
     job: &Job,
 ) -> Result<Drawn, String> {
-    let Open { device, queue } = open;
+    let Open { device, queue, .. } = open;
     let cells = job.order.len() as u32;
     let pipeline_count = pipelines.count() + groups.map_or(0, Pipelines::count);
     let made = Resources { pipelines: pipeline_count, cells: job.order.len(), ..Resources::default() };
@@ -157,7 +149,7 @@ pub(super) fn draw(
     let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding as u32, buffer)).collect();
     let scene = make.bind(&pipelines.scene, &scene);
 
-    let tables = pipelines.tables.as_ref().map(|layout| tables(&make, queue, layout, job));
+    let tables = pipelines.tables.as_ref().map(|layout| tables::bind(&make, queue, layout, job));
     let surfaces = pipelines.surfaces.as_ref().map(|layout| surfaces::bound(open, &make, layout, job));
 
     let geometry = variant.geometry();

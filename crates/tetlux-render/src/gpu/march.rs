@@ -6,6 +6,7 @@ use super::frame::Maker;
 use super::picture::Picture;
 use super::spent::Count;
 use super::surfaces;
+use super::tables;
 use super::variant::{Binding, Variant};
 use super::{Drawn, Open};
 use crate::march::March;
@@ -27,7 +28,10 @@ pub(crate) struct Limits {
 pub(super) struct Marcher {
     pipeline: wgpu::ComputePipeline,
     scene: wgpu::BindGroupLayout,
-    tables: wgpu::BindGroupLayout,
+    /// Where rays come in, and the picture.
+    entries: wgpu::BindGroupLayout,
+    /// Tables of integrals, if there are any.
+    tables: Option<wgpu::BindGroupLayout>,
     /// Where surfaces end rays, if there are any.
     surfaces: Option<wgpu::BindGroupLayout>,
 }
@@ -58,12 +62,14 @@ impl Marcher {
         let of = |binding: Binding| (binding as u32, buffer(binding.kind()));
         let scene: Vec<_> = variant.bindings().into_iter().map(of).collect();
         let scene = layout("scene", &scene);
-        let tables = layout("march", &[(0, uniform), (1, storage), (2, storage), (3, storage), (4, picture)]);
+        let entries = layout("march", &[(0, uniform), (1, storage), (2, storage), (3, storage), (4, picture)]);
+        let tables = tables::layout(device, &variant, ShaderStages::COMPUTE);
         let surfaces = variant.surfaces.then(|| surfaces::layout(device, ShaderStages::COMPUTE));
-        let layouts = [Some(&scene), Some(&tables), None, surfaces.as_ref()];
+        let layouts = [Some(&scene), Some(&entries), tables.as_ref(), surfaces.as_ref()];
+        let count = layouts.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
-            bind_group_layouts: &layouts[..if surfaces.is_some() { 4 } else { 2 }],
+            bind_group_layouts: &layouts[..count],
             immediate_size: 0,
         });
         let constants = [("ORTHOGRAPHIC", f64::from(u8::from(variant.orthographic)))];
@@ -75,17 +81,18 @@ impl Marcher {
             compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             cache: None,
         });
-        Ok(Marcher { pipeline, scene, tables, surfaces })
+        Ok(Marcher { pipeline, scene, entries, tables, surfaces })
     }
 
     /// Makes the picture; the error is what the driver said.
     pub(super) fn draw(&self, open: &Open, variant: &Variant, job: &Job, march: &March) -> Result<Drawn, String> {
-        let Open { device, queue } = open;
+        let Open { device, queue, .. } = open;
         let make = Maker::new(device, Resources { pipelines: 1, cells: job.order.len(), ..Resources::default() });
         let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b, make.scene(b, job))).collect();
         let count = Count::new(&make, &scene);
         let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding as u32, buffer)).collect();
         let scene = make.bind(&self.scene, &scene);
+        let tables = self.tables.as_ref().map(|layout| tables::bind(&make, queue, layout, job));
         let steps = u32::try_from(job.order.len()).unwrap_or(u32::MAX);
         let limits = Limits { opaque: job.opaque, steps, unused: [0; 2] };
         let storage = wgpu::BufferUsages::STORAGE;
@@ -104,9 +111,9 @@ impl Marcher {
         let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding);
         let resources = resources.chain([wgpu::BindingResource::TextureView(&view)]);
         let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
-        let tables = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let entries = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("march"),
-            layout: &self.tables,
+            layout: &self.entries,
             entries: &entries,
         });
         let surfaces = self.surfaces.as_ref().map(|layout| surfaces::bound(open, &make, layout, job));
@@ -114,7 +121,10 @@ impl Marcher {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &scene, &[]);
-        pass.set_bind_group(1, &tables, &[]);
+        pass.set_bind_group(1, &entries, &[]);
+        if let Some(tables) = &tables {
+            pass.set_bind_group(2, tables, &[]);
+        }
         if let Some(surfaces) = &surfaces {
             pass.set_bind_group(surfaces::GROUP, surfaces, &[]);
         }

@@ -75,7 +75,10 @@ pub(super) fn mapped(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Result<wgp
         // The receiver is gone only if polling failed, which is reported.
         let _ = sender.send(result);
     });
-    device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| e.to_string())?;
+    // wgpu panics if the device is lost while it is waited for.
+    let wait = || device.poll(wgpu::PollType::wait_indefinitely());
+    let waited = std::panic::catch_unwind(std::panic::AssertUnwindSafe(wait));
+    waited.map_err(|_| "the device did not finish".to_string())?.map_err(|e| e.to_string())?;
     receiver.recv().map_err(|e| e.to_string())?.map_err(|e| e.to_string())?;
     buffer.get_mapped_range(..).map_err(|e| e.to_string())
 }

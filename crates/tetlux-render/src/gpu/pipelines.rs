@@ -3,6 +3,7 @@
 use wgpu::{BindingType, BufferBindingType, ShaderStages};
 
 use super::surfaces;
+use super::tables;
 use super::variant::{Binding, Variant};
 use crate::RenderError;
 
@@ -60,15 +61,7 @@ impl Pipelines {
             })
             .collect();
         let scene = layout("scene", &scene);
-        let tables = variant.tables();
-        let tables = (!tables.is_empty()).then(|| {
-            let sample_type = wgpu::TextureSampleType::Float { filterable: false };
-            let texture = |view_dimension| BindingType::Texture { sample_type, view_dimension, multisampled: false };
-            let binding = |dimension| if dimension == wgpu::TextureViewDimension::D2 { 1 } else { 2 };
-            let textures = tables.iter().map(|&t| (binding(t), ShaderStages::FRAGMENT, texture(t)));
-            let entries: Vec<_> = [(0, ShaderStages::FRAGMENT, uniform)].into_iter().chain(textures).collect();
-            layout("tables", &entries)
-        });
+        let tables = tables::layout(device, &variant, ShaderStages::FRAGMENT);
         let surfaces = variant.surfaces.then(|| surfaces::layout(device, ShaderStages::FRAGMENT));
         let pipeline_layout = |batch: &wgpu::BindGroupLayout, drawn: [Option<&wgpu::BindGroupLayout>; 2]| {
             let [tables, surfaces] = drawn;

@@ -4,6 +4,11 @@ use std::sync::Arc;
 
 use tetlux_scene::TablePrecision;
 use tetlux_tables::Table;
+use wgpu::{BindingType, BufferBindingType, ShaderStages, TextureViewDimension};
+
+use super::frame::Maker;
+use super::variant::Variant;
+use crate::Job;
 
 /// Laid out as the shader's `Lookup` (shaders/lib/lookup.wgsl).
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -14,26 +19,73 @@ pub(crate) struct Lookup {
     pub(crate) length: [f32; 4],
 }
 
+/// The layout of bind group 2, for the stage that shades; `None` if there are no tables.
+pub(super) fn layout(
+    device: &wgpu::Device,
+    variant: &Variant,
+    visibility: ShaderStages,
+) -> Option<wgpu::BindGroupLayout> {
+    if variant.tables().is_empty() {
+        return None;
+    }
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    let lookup =
+        BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
+    let sample_type = wgpu::TextureSampleType::Float { filterable: false };
+    let texture = |&view_dimension: &TextureViewDimension| {
+        let binding = if view_dimension == TextureViewDimension::D2 { 1 } else { 2 };
+        entry(binding, BindingType::Texture { sample_type, view_dimension, multisampled: false })
+    };
+    let entries: Vec<_> = std::iter::once(entry(0, lookup)).chain(variant.tables().iter().map(texture)).collect();
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("tables"), entries: &entries };
+    Some(device.create_bind_group_layout(&descriptor))
+}
+
+/// Bind group 2, made.
+pub(super) fn bind(make: &Maker, queue: &wgpu::Queue, layout: &wgpu::BindGroupLayout, job: &Job) -> wgpu::BindGroup {
+    let mut lookup = Lookup { low: [[0.0; 4]; 2], range: [[1.0; 4]; 2], length: [job.table_length, 0.0, 0.0, 0.0] };
+    let view = |binding, (texture, bytes): (wgpu::Texture, u64)| {
+        make.count(0, 1, bytes);
+        (binding, texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    };
+    let textures: Vec<_> = match job.tables {
+        // Those of several widgets.
+        [first, others @ ..] if !others.is_empty() && job.tables.iter().all(|table| table.axes().len() == 2) => {
+            let layers = upload_layers(make.device, queue, first, others, job.table_precision, &mut lookup);
+            vec![view(LAYERS, layers)]
+        }
+        tables => {
+            let mut one = |table| upload(make.device, queue, table, job.table_precision, &mut lookup);
+            tables.iter().map(|table| view(binding_of(table), one(table))).collect()
+        }
+    };
+    let lookup = make.filled("lookup", bytemuck::bytes_of(&lookup), wgpu::BufferUsages::UNIFORM);
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    let textures = textures.iter().map(|(binding, view)| entry(*binding, wgpu::BindingResource::TextureView(view)));
+    let entries: Vec<_> = [entry(0, lookup.as_entire_binding())].into_iter().chain(textures).collect();
+    make.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("tables"), layout, entries: &entries })
+}
+
 /// The binding of a table in bind group 2, by the number of its axes; 0 is [`Lookup`].
-pub(super) fn binding_of(table: &Table) -> u32 {
+fn binding_of(table: &Table) -> u32 {
     table.axes().len() as u32 - 1
 }
 
 /// The binding of tables that are layers of one texture.
-pub(super) const LAYERS: u32 = 2;
+const LAYERS: u32 = 2;
 
 /// Texels as a texture holds them, and how a shader decodes them.
-pub(super) struct Encoded {
-    pub(super) format: wgpu::TextureFormat,
-    pub(super) bytes: Vec<u8>,
-    pub(super) texel_bytes: u32,
+struct Encoded {
+    format: wgpu::TextureFormat,
+    bytes: Vec<u8>,
+    texel_bytes: u32,
     /// Value = low + range * texel.
-    pub(super) low: [f32; 4],
-    pub(super) range: [f32; 4],
+    low: [f32; 4],
+    range: [f32; 4],
 }
 
 /// Encodes a table of one channel as one, of more as four.
-pub(super) fn encode(table: &Table, precision: TablePrecision) -> Encoded {
+fn encode(table: &Table, precision: TablePrecision) -> Encoded {
     use wgpu::TextureFormat as Format;
     let given = table.spec().channels().len();
     let channels = if given == 1 { 1 } else { 4 };
@@ -80,7 +132,7 @@ pub(super) fn encode(table: &Table, precision: TablePrecision) -> Encoded {
 }
 
 /// A table as a texture, with its decoding written to `lookup`, and its bytes.
-pub(super) fn upload(
+fn upload(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     table: &Table,
@@ -97,7 +149,7 @@ pub(super) fn upload(
 
 /// Up to four tables of two axes, one channel and one size as the layers of one texture, with their decoding in the
 /// components of the first of `lookup`, and their bytes.
-pub(super) fn upload_layers(
+fn upload_layers(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     first: &Table,

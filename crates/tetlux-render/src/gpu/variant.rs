@@ -46,8 +46,9 @@ pub(crate) const CELL_BYTES: u64 = 80;
 /// Bytes of a cell of balanced cell projection: `Balanced` of shaders/lib/balanced.wgsl.
 pub(crate) const BALANCED_BYTES: u64 = 32;
 
-/// The faces of a positively oriented cell, counter-clockwise from outside.
-const FACES: [u32; 12] = [1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1];
+/// The faces of a positively oriented cell, counter-clockwise from outside. Each has a first vertex of its own, which speaks
+/// for it (shaders/geometry/balanced.wgsl).
+const FACES: [u32; 12] = [1, 2, 3, 3, 2, 0, 0, 1, 3, 2, 1, 0];
 
 /// A buffer of bind group 0, numbered as its binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,6 +67,7 @@ pub(crate) enum Binding {
     Widgets = 11,
     Texels = 12,
     Spent = 13,
+    Seen = 14,
 }
 
 impl Binding {
@@ -212,10 +214,11 @@ impl Variant {
         if self.classification == Classification::PostClip {
             bindings.push(Binding::EntryPieces);
         }
-        bindings.extend(self.look.iter().flat_map(LookVariant::bindings));
         if self.given {
             bindings.push(Binding::Attributes);
         }
+        bindings.extend(self.look.iter().flat_map(LookVariant::bindings));
+        bindings.push(Binding::Seen);
         bindings
     }
 
@@ -351,6 +354,58 @@ mod tests {
     }
 
     #[test]
+    fn every_march_composes_and_binds_what_its_shader_names() {
+        let mut judged = 0;
+        for (&integrator, &classification) in
+            Integrator::ALL.iter().flat_map(|i| Classification::ALL.iter().map(move |c| (i, c)))
+        {
+            let projection = CellProjection::March;
+            let method = Method { projection, integrator, classification, ..Method::default() };
+            let decided = integrator != Integrator::Auto && classification != Classification::Auto;
+            if !decided || method.refusal().is_some() {
+                continue;
+            }
+            for cell_data in [false, true] {
+                let variant = Variant {
+                    group: false,
+                    orthographic: cell_data,
+                    cell_data,
+                    look: None,
+                    given: false,
+                    surfaces: !cell_data,
+                    projection,
+                    interpolation: Interpolation::Ray,
+                    integrator,
+                    classification,
+                    target: Target::Rgba32f,
+                };
+                let module = validated("stages::march", &variant);
+                let named = module.global_variables.iter().filter_map(|(_, v)| v.binding);
+                let mut named: Vec<(u32, u32)> = named.map(|b| (b.group, b.binding)).collect();
+                named.sort_unstable();
+                let mut bound: Vec<(u32, u32)> = variant.bindings().into_iter().map(|b| (0, b as u32)).collect();
+                bound.extend((0..5).map(|binding| (1, binding)));
+                bound.extend(tables_of(&variant));
+                bound.extend(variant.surfaces.then_some((3, 0)));
+                assert_eq!(named, bound, "{variant:?}");
+                judged += 1;
+            }
+        }
+        assert!(judged > 20);
+    }
+
+    /// The bindings of group 2.
+    fn tables_of(variant: &Variant) -> Vec<(u32, u32)> {
+        let tables = variant.tables();
+        let textures = tables.iter().map(|&axes| (2, if axes == wgpu::TextureViewDimension::D2 { 1 } else { 2 }));
+        textures
+            .chain((!tables.is_empty()).then_some((2, 0)))
+            .collect::<std::collections::BTreeSet<_>>()
+            .into_iter()
+            .collect()
+    }
+
+    #[test]
     fn every_variant_composes_and_binds_what_its_shaders_name() {
         let mut variants = variants();
         assert!(variants.len() > 100);
@@ -372,12 +427,7 @@ mod tests {
             let mut bound: Vec<(u32, u32)> = variant.bindings().into_iter().map(|b| (0, b as u32)).collect();
             bound.push((1, 0));
             bound.extend(variant.geometry().compute.map(|_| (1, 1)));
-            let tables = variant.tables();
-            if !tables.is_empty() {
-                bound.push((2, 0));
-                bound
-                    .extend(tables.iter().map(|&axes| (2, if axes == wgpu::TextureViewDimension::D2 { 1 } else { 2 })));
-            }
+            bound.extend(tables_of(variant));
             bound.extend(variant.surfaces.then_some((3, 0)));
             assert_eq!(named, bound, "{variant:?}");
         }

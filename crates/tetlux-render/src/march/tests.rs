@@ -72,7 +72,8 @@ fn row() -> (TetMesh, View) {
 fn march_of(mesh: &TetMesh, view: &View, drawn: &[u32]) -> March {
     let device = DeviceMesh::new(mesh, &mesh.scalar("x", Component::Magnitude).unwrap());
     let lens = Lens { view: DeviceView::new(view, mesh, &device), orthographic: view.orthographic };
-    March::new(mesh, &device, &lens, drawn, view.size)
+    let seen = crate::eye_space::EyeSpace::new(view, mesh, &device).seen(&device);
+    March::new(mesh, &device, &seen, &lens, drawn, view.size)
 }
 
 #[test]

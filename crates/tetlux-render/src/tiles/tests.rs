@@ -73,6 +73,7 @@ impl Drawing {
             tables: &[],
             table_precision: TablePrecision::F32,
             table_length: 1.0,
+            seen: &[],
             march: None,
             backdrop: None,
             opaque: opaque(max_error, &self.pieces(), None, None),
@@ -123,6 +124,7 @@ impl Drawing {
     /// The picture that the shaders' twin makes, every pixel sorted.
     fn twin(&self) -> Vec<[f32; 4]> {
         let (lens, pieces) = (self.lens(), self.pieces());
+        let seen = EyeSpace::new(&self.view, &self.mesh, &self.device).seen(&self.device);
         let [width, height] = self.view.size;
         let pixel = |index: u32| {
             let [x, y] =
@@ -130,7 +132,11 @@ impl Drawing {
             let mut fragments: Vec<(f32, [f32; 4])> = Vec::new();
             for names in &self.device.cells {
                 let points = names.map(|v| self.device.points[(v & !NEGATIVE) as usize]);
-                let vertices = points.map(|[x, y, z, _]| lens.vertex(Vec3::new(x, y, z)));
+                let vertices = names.map(|v| {
+                    let v = (v & !NEGATIVE) as usize;
+                    let [x, y, z, _] = self.device.points[v];
+                    lens.vertex(Vec3::new(x, y, z), &seen[v])
+                });
                 let scalars = points.map(|p| p[3]);
                 let cell = lens.project_cell(&vertices, scalars, if names[0] & NEGATIVE == 0 { 1.0 } else { -1.0 });
                 if cell.kind == Kind::Hidden {
