@@ -266,10 +266,10 @@ fn segments_through_widgets() {
 
 /// The uniform that shaders know a look by.
 pub(crate) struct LookBytes {
-    light: LightUniform,
-    turning: Turning,
-    image: Option<Image>,
-    color_pieces: u32,
+    pub(crate) light: LightUniform,
+    pub(crate) turning: Turning,
+    pub(crate) image: Option<Image>,
+    pub(crate) color_pieces: u32,
     /// Of the published modes: pieces, unit distances per device unit, and the table's unit.
     pub(crate) published: (u32, f32, f32),
 }
@@ -291,6 +291,8 @@ impl LookBytes {
             &place,
         ];
         let [width, height] = image.map_or([0; 2], |i| i.size);
+        let (pieces, emission, unit) = self.published;
+        let last = [width, height, self.color_pieces, pieces, emission.to_bits(), unit.to_bits(), 0, 0];
         let words = floats.concat().into_iter().map(f32::to_bits).chain(last);
         words.flat_map(u32::to_ne_bytes).collect()
     }
