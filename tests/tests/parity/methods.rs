@@ -63,6 +63,11 @@ pub(crate) fn block() -> (TetMesh, Scene) {
     (mesh, scene)
 }
 
+/// The integrals of a transfer function of one field.
+pub(crate) fn integrators() -> Vec<Integrator> {
+    all(Integrator::ALL).into_iter().filter(|integrator| !integrator.is_for_two_fields()).collect()
+}
+
 /// One cell alone: its order cannot be wrong. Seen so that it is of class 1a, 1b, 2, and with a face edge-on.
 fn single_cells(opacity: &[[f64; 2]], color: &[[f64; 4]]) -> Vec<(TetMesh, Scene)> {
     let points = [[-1.0, -0.7, 0.1], [1.1, -0.6, -0.2], [0.1, 1.0, 0.0], [0.05, -0.1, 1.2]].map(DVec3::from);
