@@ -183,8 +183,10 @@ fn exact_methods() -> Vec<Method> {
 #[test]
 fn every_exact_way_sees_the_first_surface_through_what_is_before_it() {
     let mesh = body();
+    // From so far away that a depth from the eye loses three digits.
+    let far = perspective(1000.0 * DVec3::new(2.2, -3.2, 1.8), DVec3::ZERO, 0.042);
     for (what, surfaces) in surfaces(&mesh) {
-        for camera in cameras() {
+        for camera in cameras().into_iter().chain([far]) {
             let scene = colored(&mesh, camera, surfaces.clone());
             let truth = truth(&mesh, &scene);
             for method in exact_methods() {
@@ -200,6 +202,30 @@ fn every_exact_way_sees_the_first_surface_through_what_is_before_it() {
             let opaque = truth.pixels.iter().filter(|pixel| pixel[3] == 1.0).count();
             let inside = what != "in front" && what != "behind" || camera == cameras()[0] || camera == cameras()[1];
             assert!(!inside || opaque > 100, "{what}: {opaque} pixels");
+        }
+    }
+}
+
+#[test]
+fn surfaces_in_the_planes_of_faces_hide_one_side_of_them() {
+    let parts = cuboid([4, 3, 3], Split::Six, [-DVec3::ONE, DVec3::ONE]);
+    let mesh = mesh_of(&parts, |p| (1.7 * p.x).sin() + p.y * p.z);
+    // Between cells, and at the boundary: before all of the mesh or behind, from outside.
+    for (middle, normal) in [
+        (DVec3::ZERO, DVec3::X),
+        (DVec3::X * 0.5, DVec3::X),
+        (DVec3::Z, DVec3::Z),
+        (DVec3::NEG_Y, DVec3::Y),
+        (DVec3::Y, DVec3::Y),
+    ] {
+        for camera in cameras() {
+            let scene = colored(&mesh, camera, vec![square(&mesh, middle, normal, 0.75)]);
+            let truth = truth(&mesh, &scene);
+            for method in exact_methods() {
+                let error = truth.error(frame(&mesh, &scene, method).image.pixels(), 0.0);
+                let name = format!("{middle}, {:?}, {} {}", camera.projection, method.backend, method.projection);
+                assert!(error <= TOLERANCE, "{name}: {error:.1e}");
+            }
         }
     }
 }
