@@ -4,7 +4,7 @@ use glam::DVec2;
 use tetlux_shaders::{DEFAULTS, compose};
 use tetlux_tests::Random;
 
-use crate::device::{Bound, run};
+use crate::device::run;
 
 const TEST: &str = "
 @group(3) @binding(0) var<storage, read> inputs: array<u32>;
