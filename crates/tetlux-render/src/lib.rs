@@ -217,11 +217,11 @@ impl Renderer {
         if plan.backend == Backend::Gpu && look.is_some() {
             return Err(RenderError::CpuOnly);
         }
-        let on_gpu = plan.backend == Backend::Gpu;
-        let seen = if on_gpu { stages.run("see", || eye.seen(&device_mesh)) } else { Vec::new() };
+        let drawn = plan.backend == Backend::Gpu && plan.projection != CellProjection::March;
+        let seen = if drawn { stages.run("see", || eye.seen(&device_mesh)) } else { Vec::new() };
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (plan.backend == Backend::Gpu && plan.projection == CellProjection::March)
-            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &seen, &lens, &plan.cells, view.size)));
+            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
         let opaque = opaque(scene.method.max_error, &pieces, look.as_ref());
         let job = Job {
             mesh: &device_mesh,

@@ -175,7 +175,9 @@ impl Variant {
         if self.classification == Classification::PostClip {
             bindings.push(Binding::EntryPieces);
         }
-        bindings.push(Binding::Seen);
+        if self.projection != CellProjection::March {
+            bindings.push(Binding::Seen);
+        }
         bindings
     }
 
