@@ -101,11 +101,14 @@ fn place(vertex_index: u32, instance_index: u32) -> Fragment {
 fn segment_in(fragment: Fragment) -> Segment {
     let at = fragment.position.xy - view.size * 0.5;
     let place = (at - fragment.origin.xy) - fragment.origin.zw;
-    let shares = shares_of(place, fragment.thick.xy, fragment.outer.xy, fragment.outer.zw);
+    var shares = shares_of(place, fragment.thick.xy, fragment.outer.xy, fragment.outer.zw);
     let inside = min(min(shares.x, shares.y), shares.z) >= 0.0;
     if fragment.cell.y == 1u || (BY_PLANES && !inside) {
         return whole_segment(fragment.cell.x, at);
     }
+    // Beyond the triangle, what there is at its edge.
+    shares = max(shares, vec3<f32>(0.0));
+    shares /= max(shares.x + shares.y + shares.z, 1e-30);
     let outer = fragment.first * shares.y + fragment.second * shares.z;
     let ends = fragment.thick.zw * shares.x + fragment.outer_ends.xy * shares.y + fragment.outer_ends.zw * shares.z;
     let segment = segment_between(fragment.front * shares.x + outer, fragment.back * shares.x + outer, ends, at);

@@ -1,11 +1,13 @@
 // The cells of one draw call.
 import package::lib::view::{Seen, vertex};
 import package::lib::cell::{Corners};
-import package::lib::mesh_buffers::{points, cells, seen};
+import package::lib::mesh_buffers::{points, cells};
 import package::axes::data::{scalars_of};
 
 // The cells to draw, nearest first.
 @group(0) @binding(5) var<storage, read> order: array<u32>;
+// The points as they are seen.
+@group(0) @binding(14) var<storage, read> seen: array<Seen>;
 
 struct Batch {
     // The batch is drawn back to front: its i-th cell is order[last - i].

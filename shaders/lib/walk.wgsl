@@ -7,13 +7,11 @@
 // and not only in the picture, wherever the vertices lie, even behind the eye.
 //
 // The twin in Rust is tetlux-render, march.
-import package::lib::view::{Seen, view, ORTHOGRAPHIC, rest_of};
+import package::lib::view::{view, ORTHOGRAPHIC};
 import package::lib::cell::{NUDGE};
 import package::axes::quantity::{Quantity};
 
 struct Ray {
-    // Where it passes the picture, in pixels from its middle.
-    at: vec2<f32>,
     // The direction's components across the view; the one along it is 1.
     slope: vec2<f32>,
     // Offset of the view's pivot.
@@ -34,18 +32,13 @@ fn ray_through(at: vec2<f32>) -> Ray {
     let aside = at * view.pixel;
     let pivot = vec2<f32>(view.right.w, view.down.w);
     if ORTHOGRAPHIC {
-        return Ray(at, vec2<f32>(0.0), pivot - aside);
+        return Ray(vec2<f32>(0.0), pivot - aside);
     }
-    return Ray(at, aside, pivot - aside * view.forward.w);
+    return Ray(aside, pivot - aside * view.forward.w);
 }
 
-// The offset of a point: of one in front of the near plane by its pixel, of any other by its position relative to the pivot,
-// in the axes of eye space, which has fewer digits.
-fn offset_from(ray: Ray, frame: vec3<f32>, point: Seen) -> vec2<f32> {
-    if point.depth >= view.near {
-        let aside = ((point.pixel - ray.at) + rest_of(point)) * view.pixel;
-        return select(aside * point.depth, aside, ORTHOGRAPHIC);
-    }
+// The offset of a position relative to the pivot, in the axes of eye space.
+fn offset_from(ray: Ray, frame: vec3<f32>) -> vec2<f32> {
     return frame.xy - frame.z * ray.slope + ray.pivot;
 }
 

@@ -4,7 +4,7 @@
 // Where its ray comes in from outside, each pixel has a list of faces, nearest first; from each it walks until it is
 // outside again. Neither holes nor several bodies need a search, nor does an eye inside: its rays come in behind it.
 import package::lib::view::{view, frame_of};
-import package::lib::mesh_buffers::{points, cells, seen};
+import package::lib::mesh_buffers::{points, cells};
 import package::lib::span::{Segment};
 import package::lib::walk::{Ray, Corner, ray_through, offset_from, turns, area, place_of};
 import package::axes::quantity::{quantity_at, in_cell};
@@ -32,7 +32,7 @@ const NONE = 0xffffffffu;
 
 fn corner_of(ray: Ray, cell: u32, name: u32) -> Corner {
     let frame = frame_of(points[name].xyz);
-    return Corner(name, offset_from(ray, frame, seen[name]), frame.z, quantity_at(cell, name));
+    return Corner(name, offset_from(ray, frame), frame.z, quantity_at(cell, name));
 }
 
 // The triangle through which the ray leaves the cell between the triangle abc, through which it came in, and an apex: the

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use crate::device_view::DeviceView;
 use crate::lens::{Lens, NUDGE};
-use crate::seen::Seen;
+use crate::seen::{Seen, UNIT};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -63,7 +63,7 @@ impl Lens {
     pub(crate) fn vertex(&self, position: Vec3, seen: &Seen) -> Vertex {
         let frame = self.frame_of(position);
         let eye = self.eye_of(frame).with_z(seen.depth);
-        Vertex { position, frame, eye, pixel: Vec2::from(seen.pixel), rest: seen.rest_of() }
+        Vertex { position, frame, eye, pixel: Vec2::from(seen.pixel), rest: rest_of(seen) }
     }
 
     fn deeper(&self, a: &Vertex, b: &Vertex) -> f32 {
@@ -208,6 +208,11 @@ impl Lens {
         }
         bounds
     }
+}
+
+fn rest_of(seen: &Seen) -> Vec2 {
+    let share = Vec2::from(seen.rest.map(|rest| (f32::from(rest) / 32767.0).max(-1.0)));
+    share * (Vec2::from(seen.pixel).abs() * UNIT as f32)
 }
 
 fn face_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {

@@ -247,10 +247,11 @@ impl Renderer {
         let look =
             Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), on_cpu, extinction, published, across)?;
         let on_gpu = plan.backend == Backend::Gpu;
-        let seen = if on_gpu { stages.run("see", || eye.seen(&device_mesh)) } else { Vec::new() };
+        let drawn = on_gpu && plan.projection != CellProjection::March;
+        let seen = if drawn { stages.run("see", || eye.seen(&device_mesh)) } else { Vec::new() };
         let lens = Lens { view: DeviceView::new(view, mesh, &device_mesh), orthographic: view.orthographic };
         let march = (on_gpu && plan.projection == CellProjection::March)
-            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &seen, &lens, &plan.cells, view.size)));
+            .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
         let backdrop = (!scene.surfaces.is_empty())
             .then(|| stages.run("surfaces", || Backdrop::new(&scene.surfaces, &eye, device_mesh.scale, view.size)));
         let opaque = opaque(scene.method.max_error, &pieces, look.as_ref(), backdrop.as_ref());

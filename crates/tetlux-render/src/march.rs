@@ -11,7 +11,6 @@ use tetlux_mesh::{NONE, TetMesh};
 use crate::device_mesh::{DeviceMesh, NEGATIVE};
 use crate::device_view::DeviceView;
 use crate::lens::{Lens, NUDGE};
-use crate::seen::Seen;
 
 /// Rows of pixels whose entries one core finds at a time.
 const BAND: usize = 8;
@@ -39,7 +38,6 @@ struct Face {
     names: [u32; 3],
     /// Positions relative to the pivot; they surround a ray that comes in from x towards y.
     frames: [Vec3; 3],
-    seen: [Seen; 3],
     /// First and one past the last pixel, in x and in y.
     columns: [u32; 2],
     rows: [u32; 2],
@@ -54,14 +52,7 @@ struct Entry {
 }
 
 impl March {
-    pub(crate) fn new(
-        mesh: &TetMesh,
-        device: &DeviceMesh,
-        seen: &[Seen],
-        lens: &Lens,
-        drawn: &[u32],
-        size: [u32; 2],
-    ) -> March {
+    pub(crate) fn new(mesh: &TetMesh, device: &DeviceMesh, lens: &Lens, drawn: &[u32], size: [u32; 2]) -> March {
         let mut is_drawn = vec![false; mesh.cells().len()];
         drawn.iter().for_each(|&cell| is_drawn[cell as usize] = true);
         let neighbors: Vec<[u32; 4]> =
@@ -72,7 +63,7 @@ impl March {
                 let neighbors = neighbors[cell as usize];
                 (0..4).filter(move |&k| neighbors[k] == NONE).map(move |k| (cell, k))
             })
-            .filter_map(|(cell, k)| Face::new(device, seen, lens, cell, k, size))
+            .filter_map(|(cell, k)| Face::new(device, lens, cell, k, size))
             .collect();
         let (starts, entries) = entries(lens, &faces, size);
         March { neighbors, starts, entries }
@@ -95,7 +86,7 @@ fn neighbors_of(mesh: &TetMesh, is_drawn: &[bool], cell: usize) -> [u32; 4] {
 
 impl Face {
     /// The face opposite vertex `k` of a cell; `None` if no pixel's ray can cross it.
-    fn new(device: &DeviceMesh, seen: &[Seen], lens: &Lens, cell: u32, k: usize, size: [u32; 2]) -> Option<Face> {
+    fn new(device: &DeviceMesh, lens: &Lens, cell: u32, k: usize, size: [u32; 2]) -> Option<Face> {
         let names = device.cells[cell as usize];
         let negative = names[0] & NEGATIVE != 0;
         let mut others = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][k].map(|i| names[i] & !NEGATIVE);
@@ -108,16 +99,15 @@ impl Face {
         });
         let [columns, rows] = pixels_of(lens, &frames, size);
         let entry = 4 * cell + k as u32;
-        let is_seen = columns[0] < columns[1] && rows[0] < rows[1];
-        let seen = others.map(|name| seen[name as usize]);
-        is_seen.then_some(Face { entry, names: others, frames, seen, columns, rows })
+        let seen = columns[0] < columns[1] && rows[0] < rows[1];
+        seen.then(|| Face { entry, names: others, frames, columns, rows })
     }
 
     /// How deep a ray that comes in through this face crosses it.
-    fn depth_at(&self, lens: &Lens, ray: &Ray) -> Option<f32> {
+    fn depth_at(&self, ray: &Ray) -> Option<f32> {
         let corners: [Corner; 3] = std::array::from_fn(|i| Corner {
             name: self.names[i],
-            offset: lens.offset_from(ray, self.frames[i], &self.seen[i]),
+            offset: ray.offset_from(self.frames[i]),
             depth: self.frames[i].z,
         });
         let [a, b, c] = &corners;
@@ -165,7 +155,7 @@ fn entries(lens: &Lens, faces: &[Face], size: [u32; 2]) -> (Vec<u32>, Vec<u32>) 
                 for y in face.rows[0].max(first)..face.rows[1].min(end) {
                     for x in face.columns[0]..face.columns[1] {
                         let at = Vec2::new(x as f32, y as f32) + 0.5 - Vec2::from(lens.view.size) * 0.5;
-                        if let Some(depth) = face.depth_at(lens, &lens.ray_through(at)) {
+                        if let Some(depth) = face.depth_at(&lens.ray_through(at)) {
                             found.push(Entry { pixel: y * size[0] + x, depth, entry: face.entry });
                         }
                     }
@@ -187,7 +177,6 @@ fn entries(lens: &Lens, faces: &[Face], size: [u32; 2]) -> (Vec<u32>, Vec<u32>) 
 
 #[derive(Debug, Clone, Copy)]
 struct Ray {
-    at: Vec2,
     slope: Vec2,
     pivot: Vec2,
 }
@@ -205,18 +194,16 @@ impl Lens {
         let DeviceView { right, down, forward, .. } = self.view;
         let pivot = Vec2::new(right[3], down[3]);
         if self.orthographic {
-            Ray { at, slope: Vec2::ZERO, pivot: pivot - aside }
+            Ray { slope: Vec2::ZERO, pivot: pivot - aside }
         } else {
-            Ray { at, slope: aside, pivot: pivot - aside * forward[3] }
+            Ray { slope: aside, pivot: pivot - aside * forward[3] }
         }
     }
+}
 
-    fn offset_from(&self, ray: &Ray, frame: Vec3, point: &Seen) -> Vec2 {
-        if point.depth >= self.view.near {
-            let aside = ((Vec2::from(point.pixel) - ray.at) + point.rest_of()) * self.view.pixel;
-            return if self.orthographic { aside } else { aside * point.depth };
-        }
-        frame.truncate() - frame.z * ray.slope + ray.pivot
+impl Ray {
+    fn offset_from(&self, frame: Vec3) -> Vec2 {
+        frame.truncate() - frame.z * self.slope + self.pivot
     }
 }
 

@@ -1,7 +1,5 @@
 //! A point of the mesh as it is seen.
 
-use glam::Vec2;
-
 /// Laid out as the shader's `Seen` (shaders/lib/view.wgsl). Single precision leaves a pixel's place 3e-5 of a pixel uncertain
 /// in a picture a thousand pixels wide: enough to be seen where a cell is so thin that the ray passes it in less.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -16,7 +14,7 @@ pub(crate) struct Seen {
 }
 
 /// Rounding to single precision changes a value by no more than this share of it.
-const UNIT: f64 = 1.0 / (1 << 24) as f64;
+pub(crate) const UNIT: f64 = 1.0 / (1 << 24) as f64;
 
 impl Seen {
     pub(crate) fn new(pixel: [f64; 2], depth: f64) -> Seen {
@@ -30,12 +28,6 @@ impl Seen {
             (share * f64::from(i16::MAX)).round() as i16
         });
         Seen { pixel: high, rest, depth: depth as f32 }
-    }
-
-    /// As the shader decodes it.
-    pub(crate) fn rest_of(&self) -> Vec2 {
-        let share = Vec2::from(self.rest.map(|rest| (f32::from(rest) / 32767.0).max(-1.0)));
-        share * (Vec2::from(self.pixel).abs() * UNIT as f32)
     }
 }
 

@@ -17,8 +17,8 @@ const EXACT: f64 = 1e-4;
 /// Finite, and no more: the closed form as published divides by what may be nothing.
 const UNSTABLE: f64 = 1e3;
 
-/// The most that a choice may lose on the test's scene, of colours up to 1: twice what is published of it, or what a pixel
-/// has to lose.
+/// The most that the choices of a method may lose together on the test's scene, of colours up to 1: what is published of
+/// each, or loosely what a pixel has to lose.
 fn loss(method: &Method) -> f64 {
     let integrator = match method.integrator {
         Integrator::Auto | Integrator::Direct | Integrator::Symmetric | Integrator::Q => 0.0,
@@ -38,7 +38,7 @@ fn loss(method: &Method) -> f64 {
     };
     let interpolation = match method.interpolation {
         Interpolation::Auto | Interpolation::Ray | Interpolation::Perspective => 0.0,
-        Interpolation::ScreenLinear => 0.1,
+        Interpolation::ScreenLinear => 0.2,
     };
     let precision = match (method.integrator.uses_table(), method.table_precision) {
         (false, _) | (_, TablePrecision::Auto | TablePrecision::F32) => 0.0,
@@ -57,7 +57,7 @@ fn loss(method: &Method) -> f64 {
     let order = match method.order {
         // Two are right on any mesh, and two on convex ones, such as the test's.
         Order::Auto | Order::Exact | Order::Pixel | Order::Mpvo | Order::Mpvonc => 0.0,
-        Order::Centroid | Order::Power => 0.1,
+        Order::Centroid | Order::Power => 0.3,
         Order::None => 0.5,
     };
     let order = if method.projection == CellProjection::March { 0.0 } else { order };
@@ -85,6 +85,14 @@ fn pipelines() -> Vec<Method> {
     methods.into_iter().filter(|method| named(method) && method.refusal().is_none()).collect()
 }
 
+/// Whether a combination is drawn here. Pipelines take a software driver long, half a second each: of the two geometries
+/// that differ from others in a function which knows no integrator, one that is pre-integrated and one in every
+/// classification stand for all. That all compose, and bind what they name, is a test of the renderer.
+fn is_drawn(method: &Method) -> bool {
+    let few = method.projection == CellProjection::Gator || method.interpolation == Interpolation::ScreenLinear;
+    !few || matches!(method.integrator, Integrator::Direct | Integrator::Preint)
+}
+
 #[test]
 fn every_combination_that_is_allowed_renders_within_the_error_of_its_class() {
     let start = Instant::now();
@@ -94,19 +102,17 @@ fn every_combination_that_is_allowed_renders_within_the_error_of_its_class() {
     let pipelines = pipelines();
     assert!(pipelines.len() > 100, "{}", pipelines.len());
     let mut methods = Vec::new();
-    for &method in &pipelines {
+    for &method in pipelines.iter().filter(|method| is_drawn(method)) {
         // The format of a table decides about no pipeline: all of them.
         let precisions =
             if method.integrator.uses_table() { all(TablePrecision::ALL) } else { vec![TablePrecision::Auto] };
         methods.extend(precisions.into_iter().map(|table_precision| Method { table_precision, ..method }));
-        // The target's module follows after all others and knows none of them: with one integrator of each kind.
+        // The target's module follows after all others and knows none of them, and the order is that of the cells, before
+        // any shader: with one integrator and classification.
         let marched = method.projection == CellProjection::March;
-        if !marched && matches!(method.integrator, Integrator::Direct | Integrator::PreintQ) {
+        if !marched && (method.integrator, method.classification) == (GPU.integrator, GPU.classification) {
             let others = all(Target::ALL).into_iter().filter(|target| *target != method.target);
             methods.extend(others.map(|target| Method { target, ..method }));
-        }
-        // The order is that of the cells, before any shader: with one integrator and classification.
-        if !marched && (method.integrator, method.classification) == (GPU.integrator, GPU.classification) {
             let others = all(Order::ALL).into_iter().filter(|order| *order != method.order);
             methods.extend(others.map(|order| Method { order, ..method }).filter(|method| method.refusal().is_none()));
         }
@@ -126,7 +132,7 @@ fn every_combination_that_is_allowed_renders_within_the_error_of_its_class() {
         }
     }
     let seconds = start.elapsed().as_secs_f64();
-    println!("{} pipelines, {} pictures, {seconds:.1} s; exact ones {worst:.1e}", pipelines.len(), methods.len());
+    println!("{} allowed, {} pictures, {seconds:.1} s; exact ones {worst:.1e}", pipelines.len(), methods.len());
     // Planted: what is drawn by another method than it is said to be is seen.
     let average = frame(&mesh, &scene, Method { integrator: Integrator::Average, ..GPU }, &cache).image;
     assert!(largest_error(average.pixels(), &truth) > 10.0 * EXACT);

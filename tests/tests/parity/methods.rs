@@ -255,10 +255,10 @@ fn a_method_takes_what_it_uses_and_nothing_else() {
     let march =
         Method { projection: CellProjection::March, order: Order::None, interpolation: Interpolation::Auto, ..GPU };
     let marched = taken(march);
-    assert_eq!((marched.pipelines, marched.buffers, marched.textures), (1, 10, 1));
+    assert_eq!((marched.pipelines, marched.buffers, marched.textures), (1, 9, 1));
     let looked_up = taken(Method { integrator: Integrator::Q, ..march });
     let table = 80 + 128 * 128 * 4;
-    assert_eq!(looked_up, Resources { buffers: 11, textures: 2, bytes: marched.bytes + table, ..marched });
+    assert_eq!(looked_up, Resources { buffers: 10, textures: 2, bytes: marched.bytes + table, ..marched });
     let halves = taken(Method { target: Target::Rgba16f, ..GPU });
     assert_eq!(halves.bytes, plain.bytes - 64 * 64 * 8 * 2);
     let clipped = taken(Method { classification: Classification::PostClip, ..GPU });

@@ -49,6 +49,10 @@ fn source(orthographic: bool) -> String {
 
 fn view() -> Vec<u8> {
     let mut values = vec![0.0f32; 20];
+    // Along the axes, from the origin.
+    for i in [0, 5, 10] {
+        values[i] = 1.0;
+    }
     values.extend([1024.0, 1024.0, PIXEL, NEAR]);
     values.into_iter().flat_map(f32::to_ne_bytes).collect()
 }
@@ -98,7 +102,7 @@ fn hull(p: [DVec2; 4]) -> f64 {
 /// What is wrong with a decomposed cell.
 fn faults(cell: &[Corner; 4], found: &[f32], orthographic: bool) -> Vec<String> {
     let value = |k: usize| f64::from(found[k]);
-    let at = DVec2::new(value(0), value(1));
+    let at = pixel_of(cell[0].0, orthographic) + DVec2::new(value(0), value(1));
     let side = at * f64::from(PIXEL);
     let points = if orthographic {
         [value(2), value(2) + value(3)].map(|depth| side.extend(depth))

@@ -218,7 +218,9 @@ impl Variant {
             bindings.push(Binding::Attributes);
         }
         bindings.extend(self.look.iter().flat_map(LookVariant::bindings));
-        bindings.push(Binding::Seen);
+        if self.projection != CellProjection::March {
+            bindings.push(Binding::Seen);
+        }
         bindings
     }
 

@@ -72,8 +72,7 @@ fn row() -> (TetMesh, View) {
 fn march_of(mesh: &TetMesh, view: &View, drawn: &[u32]) -> March {
     let device = DeviceMesh::new(mesh, &mesh.scalar("x", Component::Magnitude).unwrap());
     let lens = Lens { view: DeviceView::new(view, mesh, &device), orthographic: view.orthographic };
-    let seen = crate::eye_space::EyeSpace::new(view, mesh, &device).seen(&device);
-    March::new(mesh, &device, &seen, &lens, drawn, view.size)
+    March::new(mesh, &device, &lens, drawn, view.size)
 }
 
 #[test]
