@@ -63,14 +63,17 @@ fn parts(segment: Illuminated, f: vec3<f32>, b: vec3<f32>, angle: f32, low: f32,
     let specular = look.shares.z;
     let bright = max(low, high);
     let p = max(look.shares.w, 2.0);
-    let slope = bright * diffuse + specular * sqrt(p * 0.36787944);
-    let curvature = bright * diffuse + specular * p;
+    var slope = bright * diffuse + specular * sqrt(p * 0.36787944);
+    var curvature = bright * diffuse + specular * p;
     var mixed = abs(high - low) * diffuse;
     let k = look.silhouette;
     var least = 1.0;
     if k > 0.0 {
+        // What is seen of the luminance varies with the silhouette, too.
+        slope += 0.5 * bright * k;
+        curvature += 0.5 * bright * k * (k + 1.0);
         // The light's centre of a part, by its ends, is off by a twelfth of it.
-        mixed += slope / 3.0;
+        mixed += slope / 3.0 + 0.5 * abs(high - low);
         let facing = max(1.0 - abs(dot(normal(f), segment.eye)), 1.0 - abs(dot(normal(b), segment.eye)));
         // No turn goes further from the eye's direction than that.
         let bend = min(0.5 * angle * angle / max(facing, 1e-12), 4.0);

@@ -315,9 +315,9 @@ fn published_modes_draw_the_integrals_of_emission_density() {
 /// Apart by what single precision leaves of differences of the tables, as published: up to e^10 times a rounding.
 const CANCELLED: f64 = 2e-3;
 
-/// A rising ramp is, as published, a difference of two erf times an exponential: of a segment on which it hardly rises any
-/// weight may come, by a rounding. So many pixels of a triangle wave may differ.
-const UNSTABLE_SHARE: f64 = 0.1;
+/// Of a segment on which a widget hardly varies the published differences may give any weight, by a rounding. So many pixels
+/// may differ for that.
+const UNSTABLE_SHARE: f64 = 0.02;
 
 #[test]
 fn published_modes_are_the_same_on_both_back_ends() {
@@ -335,7 +335,7 @@ fn published_modes_are_the_same_on_both_back_ends() {
             println!(
                 "{name}, {integrator}: the back ends are {largest:.1e} apart, {others} pixels by more than rounding"
             );
-            let share = if (*name, integrator) == ("triangle", Integrator::Analytic) { UNSTABLE_SHARE } else { 0.0 };
+            let share = if integrator == Integrator::Analytic { UNSTABLE_SHARE } else { 0.0 };
             assert!(
                 others as f64 <= share * apart.len() as f64,
                 "{name}, {integrator}: {others} pixels, {largest:.1e}"

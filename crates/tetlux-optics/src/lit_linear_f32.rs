@@ -94,14 +94,17 @@ fn parts(segment: &Illuminated, ends: [[f32; 3]; 2], angle: f32, low: f32, high:
     let bright = low.max(high);
     let change = (high - low).abs();
     let p = shininess.max(2.0);
-    let slope = bright * diffuse + specular * (p * 0.36787944).sqrt();
-    let curvature = bright * diffuse + specular * p;
+    let mut slope = bright * diffuse + specular * (p * 0.36787944).sqrt();
+    let mut curvature = bright * diffuse + specular * p;
     let mut mixed = change * diffuse;
     let k = segment.light.silhouette;
     let mut least = 1.0_f32;
     if k > 0.0 {
+        // What is seen of the luminance varies with the silhouette, too.
+        slope += 0.5 * bright * k;
+        curvature += 0.5 * bright * k * (k + 1.0);
         // The light's centre of a part, by its ends, is off by a twelfth of it.
-        mixed += slope / 3.0;
+        mixed += slope / 3.0 + 0.5 * change;
         let facing = ends.map(|g| 1.0 - dot(normal(g), segment.eye).abs());
         // No turn goes further from the eye's direction than that.
         let bend = (0.5 * angle * angle / facing[0].max(facing[1]).max(1e-12)).min(4.0);

@@ -27,7 +27,7 @@ pub enum RenderError {
         what: &'static str,
         /// How much it needs.
         needed: u64,
-        /// "bytes" or "pixels".
+        /// "bytes", "pixels" or "buffers a stage".
         unit: &'static str,
         /// How much there is.
         limit: u64,

@@ -108,7 +108,7 @@ impl Gpu {
             }
         };
         let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty(), job.look.as_ref().map(LookVariant::new));
-        self.check_limits(open, job)?;
+        self.check_limits(open, &variant, job)?;
         let pipelines = |variant, stages: &mut Stages| {
             made(&self.pipelines, variant, stages, || self.checked(open, || Pipelines::new(&open.device, variant)))
         };
@@ -155,11 +155,15 @@ impl Gpu {
         RenderError::Device { adapter: self.device.name.clone(), reason }
     }
 
-    fn check_limits(&self, open: &Open, job: &Job) -> Result<(), RenderError> {
+    fn check_limits(&self, open: &Open, variant: &Variant, job: &Job) -> Result<(), RenderError> {
         let limits = open.device.limits();
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let side = u64::from(limits.max_texture_dimension_2d);
         let pixels = u64::from(job.size[0]) * u64::from(job.size[1]);
+        // Projected cells too or, of a march, its three lists.
+        let own = if job.march.is_some() { 3 } else { 1 };
+        let buffers = own + variant.bindings().into_iter().filter(|binding| binding.is_storage()).count();
+        let stage = u64::from(limits.max_storage_buffers_per_shader_stage);
         for (what, needed, unit, limit) in [
             ("the mesh's points", size_of_val(&job.mesh.points[..]) as u64, "bytes", binding),
             ("the mesh's cells", size_of_val(&job.mesh.cells[..]) as u64, "bytes", binding),
@@ -167,6 +171,7 @@ impl Gpu {
             ("the gradients or the image", job.look.as_ref().map_or(0, look::largest), "bytes", binding),
             ("the order of the cells", size_of_val(job.order) as u64, "bytes", binding),
             ("the faces through which rays come in", job.march.as_ref().map_or(0, March::largest), "bytes", binding),
+            ("the scene", buffers as u64, "buffers a stage", stage),
             ("the picture", u64::from(job.size[0].max(job.size[1])), "pixels a side", side),
             ("the picture", pixels * 16 + 256 * u64::from(job.size[1]), "bytes", limits.max_buffer_size),
         ] {

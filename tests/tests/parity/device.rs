@@ -26,6 +26,8 @@ pub(crate) enum Bound<'a> {
     Storage(u32, u32, &'a [u8]),
     /// In single precision.
     Texture(u32, u32, &'a Table),
+    /// Tables of two axes and one size, the layers of one texture.
+    Layers(u32, u32, &'a [Table]),
 }
 
 /// Runs `source` on rows of numbers: it sees `var<storage, read> inputs: array<u32>` (group 3, binding 0) and writes
@@ -63,7 +65,8 @@ pub(crate) fn run(source: &str, bound: &[Bound], inputs: &[f32], rows: usize, wi
         .map(|bound| match *bound {
             Bound::Uniform(g, b, bytes) => (g, b, Made::Buffer(buffer(bytes, wgpu::BufferUsages::UNIFORM))),
             Bound::Storage(g, b, bytes) => (g, b, Made::Buffer(buffer(bytes, wgpu::BufferUsages::STORAGE))),
-            Bound::Texture(g, b, table) => (g, b, Made::View(texture(device, queue, table))),
+            Bound::Texture(g, b, table) => (g, b, Made::View(texture(device, queue, std::slice::from_ref(table)))),
+            Bound::Layers(g, b, tables) => (g, b, Made::View(texture(device, queue, tables))),
         })
         .collect();
     made.push((3, 0, Made::Buffer(input)));
@@ -96,16 +99,17 @@ pub(crate) fn run(source: &str, bound: &[Bound], inputs: &[f32], rows: usize, wi
     bytemuck::pod_collect_to_vec(&bytes)
 }
 
-/// A table of one channel, or of more stored as four.
-fn texture(device: &wgpu::Device, queue: &wgpu::Queue, table: &Table) -> wgpu::TextureView {
+/// A table of one channel, or of more stored as four; or several as layers.
+fn texture(device: &wgpu::Device, queue: &wgpu::Queue, tables: &[Table]) -> wgpu::TextureView {
+    let table = &tables[0];
     let given = table.spec().channels().len();
     let channels = if given == 1 { 1 } else { 4 };
     let padded = |texel: &[f32]| -> Vec<f32> { (0..channels).map(|c| texel.get(c).copied().unwrap_or(0.0)).collect() };
-    let texels: Vec<f32> = table.texels().chunks_exact(given).flat_map(padded).collect();
+    let texels: Vec<f32> = tables.iter().flat_map(|t| t.texels().chunks_exact(given)).flat_map(padded).collect();
     let [width, height, depth] = table.spec().size;
     let descriptor = wgpu::TextureDescriptor {
         label: None,
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: depth },
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: depth * tables.len() as u32 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: if table.axes().len() == 2 { wgpu::TextureDimension::D2 } else { wgpu::TextureDimension::D3 },

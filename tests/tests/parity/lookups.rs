@@ -20,7 +20,7 @@ fn table(size: [u32; 3], kind: TableKind) -> Table {
 }
 
 /// The uniform `Lookup` of tables in single precision.
-fn lookup(length: f32) -> Vec<u8> {
+pub(crate) fn lookup(length: f32) -> Vec<u8> {
     let values = [[0.0f32; 8], [1.0; 8]].concat();
     values.into_iter().chain([length, 0.0, 0.0, 0.0]).flat_map(f32::to_ne_bytes).collect()
 }

@@ -7,5 +7,6 @@ mod functions;
 mod lookups;
 mod methods;
 mod pictures;
+mod published;
 mod thick;
 mod two_fields;

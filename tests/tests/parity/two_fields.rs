@@ -23,15 +23,15 @@ use crate::functions::bytes;
 const ROUNDING: f32 = 2e-5;
 
 /// Of segments that are cut at places which depend on a rounding: one in so many may take other pieces.
-const OTHERWISE_CUT: usize = 100;
+const OTHERWISE_CUT: usize = 50;
 
 /// What f32 cannot hold of rims of rectangles and of phases (tetlux-optics, widgets_f32).
 const SINGLE: f64 = 3e-5;
 
-const UNIT: [[f64; 2]; 2] = [[0.0, 1.0]; 2];
+pub(crate) const UNIT: [[f64; 2]; 2] = [[0.0, 1.0]; 2];
 
 /// A main function that reads `width` numbers a row as `x`, and writes what `body` puts into `y`.
-fn main_of(width: usize, results: usize, body: &str) -> String {
+pub(crate) fn main_of(width: usize, results: usize, body: &str) -> String {
     format!(
         "
 @group(3) @binding(0) var<storage, read> inputs: array<u32>;
@@ -58,7 +58,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
 }
 
 /// Colour, alpha and pieces of a result in y.
-const PUT: &str = "
+pub(crate) const PUT: &str = "
     y[0] = r.color.x;
     y[1] = r.color.y;
     y[2] = r.color.z;
@@ -122,7 +122,7 @@ fn error_functions() {
 }
 
 /// A widget of any kind over the unit square.
-fn random_widget(random: &mut Random) -> Widget {
+pub(crate) fn random_widget(random: &mut Random) -> Widget {
     let shape = match random.below(5) {
         0 => Shape::Uniform,
         1 => Shape::Gaussian {
@@ -144,7 +144,7 @@ fn random_widget(random: &mut Random) -> Widget {
 }
 
 /// Both scalars at the front, both at the back, and a length; mesh cells span anything from nothing to all of the range.
-fn random_segment(random: &mut Random) -> [f32; 5] {
+pub(crate) fn random_segment(random: &mut Random) -> [f32; 5] {
     let front = [random.between(0.0, 1.0), random.between(0.0, 1.0)];
     let reach = 10f64.powf(random.between(-4.0, 0.0));
     let back = front.map(|f| f + reach * (random.between(0.0, 1.0) - f));
@@ -152,11 +152,11 @@ fn random_segment(random: &mut Random) -> [f32; 5] {
     [front[0], front[1], back[0], back[1], length].map(|v| v as f32)
 }
 
-fn ends(row: &[f32]) -> ([f32; 2], [f32; 2], f32) {
+pub(crate) fn ends(row: &[f32]) -> ([f32; 2], [f32; 2], f32) {
     ([row[0], row[1]], [row[2], row[3]], row[4])
 }
 
-fn widget_bytes(widgets: &[widget_f32::Widget]) -> Vec<u8> {
+pub(crate) fn widget_bytes(widgets: &[widget_f32::Widget]) -> Vec<u8> {
     let rows = widgets.iter().flat_map(|w| {
         let floats = [w.color, w.support, w.shape].concat();
         floats.into_iter().map(f32::to_bits).chain(w.kind)
@@ -265,20 +265,22 @@ fn segments_through_widgets() {
 }
 
 /// The uniform that shaders know a look by.
-struct LookBytes {
-    light: LightUniform,
-    turning: Turning,
-    image: Option<Image>,
-    color_pieces: u32,
+pub(crate) struct LookBytes {
+    pub(crate) light: LightUniform,
+    pub(crate) turning: Turning,
+    pub(crate) image: Option<Image>,
+    pub(crate) color_pieces: u32,
+    /// Of the published modes: pieces, unit distances per device unit, and the table's unit.
+    pub(crate) published: (u32, f32, f32),
 }
 
 impl LookBytes {
-    fn none() -> LookBytes {
+    pub(crate) fn none() -> LookBytes {
         let light = LightUniform { shares: [0.0; 4], direction: [0.0; 3], silhouette: 0.0 };
-        LookBytes { light, turning: Turning::default(), image: None, color_pieces: 0 }
+        LookBytes { light, turning: Turning::default(), image: None, color_pieces: 0, published: (0, 0.0, 0.0) }
     }
 
-    fn bytes(&self) -> Vec<u8> {
+    pub(crate) fn bytes(&self) -> Vec<u8> {
         let (light, turning) = (&self.light, &self.turning);
         let image = self.image.as_ref();
         let place = image.map_or([0.0; 4], |i| [i.scale[0], i.scale[1], i.origin[0], i.origin[1]]);
@@ -289,8 +291,9 @@ impl LookBytes {
             &place,
         ];
         let [width, height] = image.map_or([0; 2], |i| i.size);
-        let words =
-            floats.concat().into_iter().map(f32::to_bits).chain([width, height, self.color_pieces, 0, 0, 0, 0, 0]);
+        let (pieces, emission, unit) = self.published;
+        let last = [width, height, self.color_pieces, pieces, emission.to_bits(), unit.to_bits(), 0, 0];
+        let words = floats.concat().into_iter().map(f32::to_bits).chain(last);
         words.flat_map(u32::to_ne_bytes).collect()
     }
 }

@@ -64,6 +64,10 @@ pub(crate) enum Binding {
 }
 
 impl Binding {
+    pub(crate) fn is_storage(self) -> bool {
+        self.kind() != wgpu::BufferBindingType::Uniform
+    }
+
     pub(crate) fn kind(self) -> wgpu::BufferBindingType {
         match self {
             Binding::View | Binding::Look => wgpu::BufferBindingType::Uniform,
