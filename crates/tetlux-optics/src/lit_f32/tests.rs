@@ -74,7 +74,6 @@ const LARGEST_SHARE: f64 = 0.7;
 
 /// Shares of the allowed error that random segments take, ascending, and the mean number of pieces. What is seen of a
 /// segment is given by `make`: unlit between two shares, and in f64 at a share.
-#[expect(clippy::type_complexity, reason = "two functions of one random segment")]
 fn shares_of_the_bound(
     error: f32,
     make: impl Fn(&mut Random, f32) -> (Box<dyn Fn(f32, f32, f32) -> Integrated>, Box<dyn Fn(f64) -> ([f64; 3], f64)>),
