@@ -17,6 +17,7 @@ Examples:
   cargo xtask render mesh.vtu --field pressure
   cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfin_tets.vtu
   cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfinxyz.bin --solution bluntfinq.bin --field Density
+  cargo xtask render scenes/wing-gaussian.toml --integrator approximate --pieces 20
   cargo xtask render --backend gpu --integrator psi --table-precision u16 --interpolation perspective
   cargo xtask render scene.toml --size 1600x900 --backend cpu --order pixel --output pictures/fin.png --json fin.json";
 
