@@ -169,7 +169,7 @@ impl SceneFile {
         };
         Ok(Scene {
             classification: self.classification(scalar.range, second.as_ref().map(|second| second.range))?,
-            lighting: self.light.zip(gradients).map(|(light, gradients)| Lighting { light, gradients }),
+            lighting: self.light.zip(gradients).map(|(light, gradients)| Lighting::new(light, gradients)),
             unit_distance: match self.unit_distance {
                 UnitDistance::MeanEdge => mesh.mean_edge_length(),
                 UnitDistance::Length(length) => length,
