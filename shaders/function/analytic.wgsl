@@ -41,12 +41,12 @@ fn visible(t: Track, u: f32, end: f32, depth: f32) -> f32 {
     // From the front, phases ascend: a lobe is the same from either side.
     let q = select(along, 1.0 - along, t.step < 0.0);
     if t.kind == TRIANGLE {
-        if q.x + q.y < 1.0 {
-            return psi_published(track_rate(t, end) * (end - u), track_rate(t, u) * (end - u));
-        }
         let strength = 0.5 * t.scale / step;
         if strength > LARGEST {
             return even(depth);
+        }
+        if q.x + q.y < 1.0 {
+            return psi_published(track_rate(t, end) * (end - u), track_rate(t, u) * (end - u));
         }
         return sample_triangle(strength, 2.0 * q.x - 1.0, 2.0 * q.y - 1.0) / (2.0 * travel);
     }

@@ -206,6 +206,28 @@ fn light_and_silhouettes_to_every_budget() {
     }
 }
 
+/// A field that fades out has gradients that single precision cannot hold, where a widget may be seen all the same.
+#[test]
+fn light_where_the_field_fades_out() {
+    let parts = cuboid([5, 4, 4], Split::Six, [-DVec3::ONE, DVec3::ONE]);
+    let blob = |p: DVec3| (-60.0 * (p - DVec3::new(-0.6, 0.1, 0.2)).length_squared()).exp();
+    let fields = vec![Field::point("x", 1, parts.sample(blob)), Field::point("y", 1, parts.sample(|p| p.y))];
+    let mesh = TetMesh::assemble(&parts.points, &parts.cells, fields).unwrap();
+    let fog = Widget::new(Shape::Gaussian { center: [0.1, 0.0], sigma: [0.3, 2.0] }, None, 1.0, [1.0, 0.5, 0.2]);
+    let function = Classification::Widgets(BivariateFunction { widgets: vec![fog.unwrap()] });
+    let mut scene = scene(&mesh, "y", function, None, cameras()[0]);
+    let light = Light::new(Some([0.4, -0.2, 1.0]), [0.2, 0.8, 0.5], 30.0, 0.0).unwrap();
+    let gradients = mesh.vertex_gradients(&scene.scalar);
+    let shortest = gradients.iter().map(|g| g.length()).fold(f64::INFINITY, f64::min);
+    assert!(shortest < 1e-40, "{shortest:e}");
+    scene.lighting = Some(Lighting::new(light, gradients.clone()));
+    holds("fading out, lit", &mesh, &scene, &[CPU, GPU]);
+    // The planted difference: gradients as they are light what single precision has no normal for.
+    scene.lighting = Some(Lighting { light, gradients });
+    let wrong = largest_error(frame(&mesh, &scene, CPU).image.pixels(), &reference(&mesh, &scene));
+    assert!(wrong > 1e-3, "{wrong:.1e}");
+}
+
 #[test]
 fn segments_sorted_in_every_pixel() {
     let mesh = mesh();

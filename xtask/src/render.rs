@@ -19,6 +19,7 @@ Examples:
   cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfinxyz.bin --solution bluntfinq.bin --field Density
   cargo xtask render scenes/wing-silhouette.toml --projection march
   cargo xtask render mesh.vtu --field pressure --surface body.stl
+  cargo xtask render scenes/wing-gaussian.toml --integrator approximate --pieces 20
   cargo xtask render --backend gpu --integrator psi --table-precision u16 --interpolation perspective
   cargo xtask render scene.toml --size 1600x900 --backend cpu --order pixel --output pictures/fin.png --json fin.json";
 

@@ -202,7 +202,7 @@ impl SceneFile {
         Ok(Scene {
             classification,
             emphasis,
-            lighting: self.light.zip(gradients).map(|(light, gradients)| Lighting { light, gradients }),
+            lighting: self.light.zip(gradients).map(|(light, gradients)| Lighting::new(light, gradients)),
             unit_distance: match self.unit_distance {
                 UnitDistance::MeanEdge => mesh.mean_edge_length(),
                 UnitDistance::Length(length) => length,

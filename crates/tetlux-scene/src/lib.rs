@@ -86,8 +86,25 @@ pub struct Scene {
 pub struct Lighting {
     /// The light.
     pub light: Light,
-    /// The gradient of the first scalar at every point of the mesh, per world length; linear in each cell.
+    /// The gradient of the first scalar at every point of the mesh, per world length; linear in each cell. 0: no normal.
     pub gradients: Vec<DVec3>,
+}
+
+impl Lighting {
+    /// Gradients shorter than this share of the longest have no direction: where a field fades out there is no surface to
+    /// light, and single precision, in which back ends shade, could not tell one.
+    pub const LEAST_GRADIENT: f64 = 1e-12;
+
+    /// With gradients too short for a direction made 0: they count as none.
+    pub fn new(light: Light, mut gradients: Vec<DVec3>) -> Lighting {
+        let longest = gradients.iter().map(|g| g.length()).filter(|l| l.is_finite()).fold(0.0, f64::max);
+        for gradient in &mut gradients {
+            if gradient.length() < Lighting::LEAST_GRADIENT * longest {
+                *gradient = DVec3::ZERO;
+            }
+        }
+        Lighting { light, gradients }
+    }
 }
 
 impl Scene {

@@ -16,7 +16,7 @@ const CANCELLED: f32 = 2e-3;
 
 /// Of segments on which a widget hardly varies the published differences may give any weight, by a rounding: one in so many
 /// may differ.
-const UNSTABLE: usize = 20;
+const UNSTABLE: usize = 40;
 
 const ROWS: usize = 4000;
 
