@@ -92,6 +92,9 @@ pub(crate) struct Bench<'a> {
     size: Option<[u32; 2]>,
 }
 
+/// Loads a scene and its mesh.
+type Load<'a> = Box<dyn Fn() -> Result<Input> + 'a>;
+
 /// Everything that was found.
 #[derive(Serialize)]
 pub(crate) struct Results {
@@ -142,30 +145,32 @@ impl Bench<'_> {
         )
     }
 
-    /// What is raced: the scenes named, or else those that are known.
-    fn inputs(&self, scenes: &[PathBuf]) -> Result<Vec<Input>> {
-        let size = self.size.unwrap_or(SIZE);
+    /// What is raced: the scenes named, or else those that are known; each is loaded when its turn comes, so that memory is
+    /// told of one at a time.
+    fn inputs<'b>(&'b self, scenes: &'b [PathBuf]) -> Vec<Load<'b>> {
         let flags = || SceneArgs { size: self.size, ..SceneArgs::default() };
         if !scenes.is_empty() {
-            return scenes.iter().map(|path| flags().load(Some(path))).collect();
+            return scenes.iter().map(|path| -> Load { Box::new(move || flags().load(Some(path))) }).collect();
         }
+        let peak = |side: u32| -> Load { Box::new(move || PEAK.input("peak", "A peak within cells", side)) };
         if self.quick {
-            return Ok(vec![PEAK.input("peak", "A peak within cells", QUICK_SIDE)?]);
+            return vec![peak(QUICK_SIDE)];
         }
-        let mut inputs = vec![
-            flags().load(None)?,
-            GRADED.input("graded", "Edges from 1e-5 to 1", size[1])?,
-            PEAK.input("peak", "A peak within cells", size[1])?,
+        let side = self.size.unwrap_or(SIZE)[1];
+        let mut inputs: Vec<Load> = vec![
+            Box::new(move || flags().load(None)),
+            Box::new(move || GRADED.input("graded", "Edges from 1e-5 to 1", side)),
+            peak(side),
         ];
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
         for scene in ["bluntfin-smooth", "bluntfin-spiky", "post-smooth", "post-spiky"] {
             let stem = scene.split('-').next().unwrap_or(scene);
             if let Some(source) = self.data.find(stem) {
                 let path = folder.join(scene).with_extension("toml");
-                inputs.push(source.flags(flags()).load(Some(&path))?);
+                inputs.push(Box::new(move || source.flags(flags()).load(Some(&path))));
             }
         }
-        Ok(inputs)
+        inputs
     }
 }
 
@@ -192,8 +197,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let racing = args.paper.is_empty();
     if racing {
         let python = args.peer.as_ref().map(|_| args.python.as_str());
-        for input in bench.inputs(&args.scenes)? {
-            let race = race::race(&bench, &input, python, &args.output.join("peer"))?;
+        for load in bench.inputs(&args.scenes) {
+            let race = race::race(&bench, &load()?, python, &args.output.join("peer"))?;
             print(&race);
             results.races.push(race);
         }
