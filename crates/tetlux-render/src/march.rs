@@ -100,7 +100,7 @@ impl Face {
         let [columns, rows] = pixels_of(lens, &frames, size);
         let entry = 4 * cell + k as u32;
         let seen = columns[0] < columns[1] && rows[0] < rows[1];
-        seen.then(|| Face { entry, names: others, frames, columns, rows })
+        seen.then_some(Face { entry, names: others, frames, columns, rows })
     }
 
     /// How deep a ray that comes in through this face crosses it.
