@@ -48,8 +48,8 @@ struct RayFragment {
     @location(2) @interpolate(flat) plane_2: vec4<f32>,
     @location(3) @interpolate(flat) plane_3: vec4<f32>,
     @location(4) @interpolate(flat) origins: vec4<f32>,
-    // Range of w, and the depth of the reference vertex.
-    @location(5) @interpolate(flat) range_depth: vec3<f32>,
+    // Range of w, and the reference vertex's depth from the pivot.
+    @location(5) @interpolate(flat) range_level: vec3<f32>,
     // The pieces of the transfer function that the cell's scalars meet, the cell's place in the order, and the face that
     // is drawn, if it is one.
     @location(6) @interpolate(flat) pieces_entry: vec4<u32>,

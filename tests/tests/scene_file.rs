@@ -185,6 +185,7 @@ fn every_axis_of_the_method_is_a_key() {
         target: Target::Rgba8Dither,
         pieces: Some(20),
         max_error: 0.5,
+        no_skip: Method::default().no_skip,
     };
     assert_eq!(method, expected);
 }

@@ -4,25 +4,30 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
+use glam::DVec3;
 use tetlux_ingest::{CacheOutcome, Extras, Surface, TetMesh};
-use tetlux_mesh::procedural;
+use tetlux_mesh::Field;
+use tetlux_mesh::procedural::{self, Split};
 use tetlux_order::Facts;
 use tetlux_render::Model;
 use tetlux_scene::{
     Backend, CellProjection, Classification, FieldSpec, Integrator, Interpolation, Order, Plan, Projection, Scene,
-    SceneFile, SurfaceSpec, TablePrecision, Target, TransferSource, UnitDistance,
+    SceneFile, Skip, SurfaceSpec, TablePrecision, Target, TransferSource, UnitDistance,
 };
 
 use crate::mesh_args::MeshArgs;
 use crate::progress;
 
 /// Flags override the scene file.
-#[derive(Args, Default)]
+#[derive(Args, Clone, Default)]
 #[command(next_help_heading = "Scene (flags override the scene file)")]
 pub(crate) struct SceneArgs {
     /// Mesh file (see docs/formats.md)
     #[arg(long, value_name = "FILE")]
     pub(crate) mesh: Option<PathBuf>,
+    /// A box of N x N x N cubes, six tetrahedra each, instead of a file
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200), conflicts_with = "mesh")]
+    pub(crate) grid: Option<u32>,
     /// Field to show
     #[arg(long, value_name = "NAME")]
     pub(crate) field: Option<String>,
@@ -84,9 +89,12 @@ pub(crate) struct SceneArgs {
     /// Equal pieces a segment of --integrator approximate, 1 to 1000 [default: 10]
     #[arg(long, value_name = "N")]
     pub(crate) pieces: Option<u32>,
-    /// Largest error of a pixel that `compare` accepts, linear
+    /// Largest error of a pixel, linear: what the plan chooses keeps to it, and `compare` checks it [default: 1e-3]
     #[arg(long, value_name = "E")]
     pub(crate) max_error: Option<f64>,
+    /// Do what the scene does not need, to measure what skipping it saves; may be repeated (--explain lists the names)
+    #[arg(long, value_name = "NAME")]
+    pub(crate) no_skip: Vec<Skip>,
     /// Write composited values to the PNG as they are, as ParaView does
     #[arg(long)]
     pub(crate) display_space: bool,
@@ -130,7 +138,7 @@ impl Input {
 }
 
 /// The scene of a mesh that comes without one.
-pub(crate) const DEFAULT: &str = include_str!("../../scenes/default.toml");
+const DEFAULT: &str = include_str!("../../scenes/default.toml");
 /// The scene that is rendered where nothing is named.
 pub(crate) const BUILT_IN: &str = include_str!("../../scenes/wing.toml");
 /// Tetrahedra of its mesh.
@@ -141,7 +149,16 @@ impl SceneArgs {
     /// Reads a scene and its mesh. `path` is a scene file, or a mesh to be shown with the default scene; without one,
     /// and without a mesh among the flags, it is the built-in scene.
     pub(crate) fn load(&self, path: Option<&Path>) -> Result<Input> {
-        let is_scene = path.is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")));
+        if let Some(n) = self.grid {
+            if let Some(path) = path {
+                bail!("{}: --grid takes the place of a file: leave one of them out", path.display());
+            }
+            let mesh = progress::during("making the grid", || grid(n as usize))?;
+            let mut file = SceneFile::parse("the default scene", DEFAULT)?;
+            self.override_scene(&mut file)?;
+            return self.bind(format!("grid-{n}"), file, mesh);
+        }
+        let is_scene = path.is_some_and(is_scene);
         let mesh = if is_scene { None } else { path.or(self.mesh.as_deref()) };
         let (name, mut file) = match (path, mesh) {
             (Some(scene), None) => (stem(scene), SceneFile::read(scene)?),
@@ -182,6 +199,14 @@ impl SceneArgs {
             file.field = file.field.or_else(|| mesh.fields().first().map(|f| f.name.clone()));
         }
         Ok(Input { extras, ..self.bind(name, file, mesh)? })
+    }
+
+    /// The mesh file that [`load`](Self::load) would read.
+    pub(crate) fn mesh_path(&self, path: Option<&Path>) -> Result<Option<PathBuf>> {
+        Ok(match path.filter(|p| is_scene(p)) {
+            Some(scene) => self.mesh.clone().or(SceneFile::read(scene)?.mesh),
+            None => path.map(Path::to_path_buf).or(self.mesh.clone()),
+        })
     }
 
     /// A scene, which flags have overridden, on a mesh.
@@ -261,6 +286,7 @@ impl SceneArgs {
         method.target = self.target.unwrap_or(method.target);
         method.pieces = self.pieces.or(method.pieces);
         method.max_error = self.max_error.unwrap_or(method.max_error);
+        method.no_skip = self.no_skip.iter().copied().collect();
         Ok(())
     }
 }
@@ -269,6 +295,17 @@ impl SceneArgs {
 pub(crate) fn wing(cells: usize) -> Result<TetMesh> {
     let wing = procedural::wing(BUILT_IN_SEED, cells);
     Ok(TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field])?)
+}
+
+fn grid(n: usize) -> Result<TetMesh> {
+    let parts = procedural::cuboid([n; 3], Split::Six, [DVec3::ZERO, DVec3::ONE]);
+    let distance = Field::point("distance", 1, parts.sample(|p| p.distance(DVec3::new(0.4, 0.5, 0.6))));
+    Ok(TetMesh::assemble(&parts.points, &parts.cells, vec![distance])?)
+}
+
+/// Whether a path names a scene, and no mesh.
+pub(crate) fn is_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
 /// The name of a file without its extension.

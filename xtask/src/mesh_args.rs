@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use tetlux_ingest::{Cache, Expression, Loaded, ReadOptions, Split, read_cached};
+use tetlux_ingest::{Cache, Expression, Loaded, ReadOptions, Split, read_cached, time_steps};
 
 use crate::progress;
 
-#[derive(clap::Args, Default)]
+#[derive(clap::Args, Clone, Default)]
 #[command(next_help_heading = "Mesh file")]
 pub(crate) struct MeshArgs {
     /// PLOT3D solution (q file) that belongs to the grid
@@ -18,7 +18,7 @@ pub(crate) struct MeshArgs {
     pub(crate) split: Option<u32>,
     /// Time step, from 0 (Exodus II, Gmsh, VTK XML) [default: the last]
     #[arg(long, value_name = "N")]
-    time: Option<usize>,
+    pub(crate) time: Option<usize>,
     /// Size of the tetrahedra that fill a closed surface (OBJ, STL) [default: 1/40 of its diagonal]
     #[arg(long, value_name = "LENGTH")]
     cell_size: Option<f64>,
@@ -28,16 +28,28 @@ pub(crate) struct MeshArgs {
     /// Read the file anew, and neither use nor store its mesh in the cache (see `cargo xtask cache`)
     #[arg(long)]
     no_cache: bool,
+    /// Read without a sign of progress
+    #[arg(skip)]
+    pub(crate) quiet: bool,
 }
 
 impl MeshArgs {
     /// The mesh of a file, from the cache or read with this solution and split.
     pub(crate) fn load(&self, path: &Path, solution: Option<PathBuf>, split: Option<u32>) -> Result<Loaded> {
-        let MeshArgs { time, cell_size, .. } = *self;
-        let options = ReadOptions { solution, time, cell_size, expressions: self.expression.clone() };
+        let options = self.options(solution);
         let cache = if self.no_cache { None } else { Cache::of_user() };
         let read = || read_cached(path, &options, split_of(split), cache.as_ref());
-        Ok(progress::during("reading the mesh", read)?)
+        Ok(if self.quiet { read()? } else { progress::during("reading the mesh", read)? })
+    }
+
+    /// The time steps of a file that has several.
+    pub(crate) fn time_steps(&self, path: &Path) -> Result<usize> {
+        Ok(progress::during("counting the time steps", || time_steps(path, &self.options(None)))?)
+    }
+
+    fn options(&self, solution: Option<PathBuf>) -> ReadOptions {
+        let MeshArgs { time, cell_size, .. } = *self;
+        ReadOptions { solution, time, cell_size, expressions: self.expression.clone() }
     }
 
     /// The first of the flags that only a file can follow, if any is given.

@@ -289,6 +289,7 @@ mod tests {
         image.pixels_mut()[1][2] += 0.25;
         image.pixels_mut()[3][0] += 0.5;
         let frame = Frame {
+            mesh_reused: false,
             image,
             stages: Vec::new(),
             resources: Default::default(),

@@ -8,18 +8,17 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use glam::DVec3;
 use tetlux_image::{Encoding, write_png};
-use tetlux_mesh::procedural::{Split, cuboid};
-use tetlux_mesh::{Field, TetMesh};
+use tetlux_mesh::TetMesh;
 use tetlux_optics::Classification;
 use tetlux_order::verify::{Pairs, Ray, Verifier};
 use tetlux_order::{Facts, Method, Order, Orderer, Sampling};
 use tetlux_render::{Stages, sampling};
-use tetlux_scene::{Camera, SceneFile, View};
+use tetlux_scene::{Camera, View};
 
 use self::along::Along;
 pub(crate) use self::report::FactsReport;
 use self::report::{MethodReport, Report};
-use crate::input::{DEFAULT, Input, SceneArgs};
+use crate::input::{Input, SceneArgs, is_scene};
 use crate::progress;
 use crate::report::{create_folder, write_json};
 
@@ -48,9 +47,6 @@ pub(crate) struct Args {
     scene: Option<PathBuf>,
     #[command(flatten)]
     input: SceneArgs,
-    /// Judge a box of N x N x N cubes, six tetrahedra each, instead of a file
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200), conflicts_with_all = ["scene", "mesh"])]
-    grid: Option<u32>,
     /// Look from N places all round the mesh instead of from the scene's camera
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     views: Option<u32>,
@@ -130,31 +126,14 @@ pub(crate) fn run(args: &Args) -> Result<bool> {
 }
 
 fn load(args: &Args) -> Result<Input> {
-    let mut input = if let Some(n) = args.grid {
-        let (mesh, name) = progress::during("making the grid", || grid(n as usize))?;
-        let mut file = SceneFile::parse("the default scene", DEFAULT)?;
-        args.input.override_scene(&mut file)?;
-        args.input.bind(name, file, mesh)?
-    } else {
-        args.input.load(args.scene.as_deref())?
-    };
+    let mut input = args.input.load(args.scene.as_deref())?;
     let is_mesh = args.input.mesh.is_some() || args.scene.as_ref().is_some_and(|path| !is_scene(path));
-    if args.grid.is_some() || (is_mesh && !args.scene.as_ref().is_some_and(|path| is_scene(path))) {
+    if args.input.grid.is_some() || (is_mesh && !args.scene.as_ref().is_some_and(|path| is_scene(path))) {
         let [low, high] = input.mesh.local_bounds();
         input.scene.classification = Classification::OneField(along::spiky(input.scene.scalar.range)?);
         input.scene.unit_distance = along::SPIKY_UNIT_DISTANCE * low.distance(high);
     }
     Ok(input)
-}
-
-fn is_scene(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
-}
-
-fn grid(n: usize) -> Result<(TetMesh, String)> {
-    let parts = cuboid([n; 3], Split::Six, [DVec3::ZERO, DVec3::ONE]);
-    let distance = Field::point("distance", 1, parts.sample(|p| p.distance(DVec3::new(0.4, 0.5, 0.6))));
-    Ok((TetMesh::assemble(&parts.points, &parts.cells, vec![distance])?, format!("grid of {n}")))
 }
 
 /// The scene's view, or views evenly from all round the mesh.

@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use tetlux_image::{Encoding, Image, write_exr, write_png};
 use tetlux_render::{Frame, Renderer, Stages};
 use tetlux_scene::{Backend, Plan};
 
 use crate::input::{Input, SceneArgs};
 use crate::report::{Report, create_folder};
-use crate::{progress, tables};
+use crate::sequence::{self, SequenceArgs};
+use crate::{explain, progress, tables};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -20,6 +21,10 @@ Examples:
   cargo xtask render scenes/wing-silhouette.toml --projection march
   cargo xtask render mesh.vtu --field pressure --surface body.stl
   cargo xtask render scenes/wing-gaussian.toml --integrator approximate --pieces 20
+  cargo xtask render --explain
+  cargo xtask render mesh.vtu --orbit 120 --max-error 1e-2 --output turn/mesh.png
+  cargo xtask render run.e --field pressure --times
+  cargo xtask render scene.toml --series step-*.vtu --json series.json
   cargo xtask render --backend gpu --integrator psi --table-precision u16 --interpolation perspective
   cargo xtask render scene.toml --size 1600x900 --backend cpu --order pixel --output pictures/fin.png --json fin.json";
 
@@ -36,20 +41,40 @@ pub(crate) struct Args {
     /// Write every figure as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Say what is skipped and why, and render without each to measure what it saves
+    #[arg(long)]
+    explain: bool,
+    #[command(flatten)]
+    sequence: SequenceArgs,
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
+    if args.sequence.is_asked() {
+        if args.explain {
+            bail!("--explain is for one picture: leave out what asks for a sequence");
+        }
+        let (output, json) = (args.output.as_deref(), args.json.as_deref());
+        return sequence::run(&args.sequence, &args.input, args.scene.as_deref(), output, json);
+    }
     let input = args.input.load(args.scene.as_deref())?;
     let renderer = Renderer::new();
     let adapter = renderer.device().map(|d| d.name.clone());
     let (plan, frame) = render(&input, &renderer, |plan| {
-        Report::new(&input, plan, adapter.as_deref(), &[]).print_plan(plan);
+        let report = Report::new(&input, plan, adapter.as_deref(), &[]);
+        report.print_plan(plan);
+        if args.explain {
+            explain::print(&report.skips);
+        }
     })?;
     let mut report = Report::new(&input, &plan, adapter.as_deref(), &frame.stages);
     report.resources = (plan.backend == Backend::Gpu).then(|| frame.resources.into());
     report.add(&frame);
     report.adaptive = frame.spent.map(Into::into);
     report.print_stages();
+    explain::resolve(&mut report.skips, &frame);
+    if args.explain {
+        explain::measure(&input, &mut report.skips, &frame.image)?;
+    }
     let png = args.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name).with_extension("png"));
     report.files = write_picture(&input, &frame.image, &png)?;
     say!("{}", report.files.join("\n"));

@@ -6,8 +6,9 @@ use anyhow::Result;
 use serde::Serialize;
 use tetlux_image::{Metrics, write_atomically};
 use tetlux_render::{Frame, Resources, Spent, Stage};
-use tetlux_scene::Plan;
+use tetlux_scene::{Plan, Stated};
 
+use crate::explain::{Saving, savings};
 use crate::input::Input;
 
 /// Everything that `render` and `compare` print, as JSON.
@@ -33,6 +34,11 @@ pub(crate) struct Report<'a> {
     target: String,
     max_error: f64,
     plan: Vec<(&'static str, &'a str)>,
+    /// What is not done, and what that saves.
+    pub(crate) skips: Vec<Saving>,
+    /// The error that the picture is stated to have; none where nothing bounds it.
+    stated_error: Option<f64>,
+    stated: &'a Stated,
     warnings: &'a [String],
     stages: Vec<StageReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -115,6 +121,11 @@ impl From<&Stage> for StageReport {
     }
 }
 
+/// Stages as they are reported.
+pub(crate) fn stages_of(stages: &[Stage]) -> Vec<StageReport> {
+    stages.iter().map(|s| StageReport { name: s.name, wall_seconds: s.wall, cpu_seconds: s.cpu }).collect()
+}
+
 impl<'a> Report<'a> {
     pub(crate) fn new(input: &'a Input, plan: &'a Plan, adapter: Option<&'a str>, stages: &[Stage]) -> Report<'a> {
         Report {
@@ -138,6 +149,9 @@ impl<'a> Report<'a> {
             target: plan.target.to_string(),
             max_error: input.scene.method.max_error,
             plan: plan.reasons.iter().map(|(what, why)| (*what, why.as_str())).collect(),
+            skips: savings(input, plan),
+            stated_error: plan.stated.total(),
+            stated: &plan.stated,
             warnings: &plan.warnings,
             stages: stages.iter().map(StageReport::from).collect(),
             resources: None,

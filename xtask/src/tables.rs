@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use tetlux_render::table_specs;
-use tetlux_scene::{Integrator, Plan};
+use tetlux_scene::{Integrator, Plan, Skip};
 use tetlux_tables::{Store, Table, TableKind, TableSpec};
 
 use crate::input::Input;
@@ -26,7 +26,11 @@ pub(crate) fn load(input: &Input, plan: &Plan) -> Result<Vec<Arc<Table>>> {
             _ => store.read(spec)?.table,
         }))
     };
-    table_specs(&input.scene, &input.mesh, plan).iter().map(load).collect()
+    let mut specs = table_specs(&input.scene, &input.mesh, plan);
+    if plan.kept.contains(Skip::Tables) {
+        specs.push(TableSpec::default_q());
+    }
+    specs.iter().map(load).collect()
 }
 
 /// What to do about tables that cannot be used: an integrator of the command line is an order, so that they are an error;

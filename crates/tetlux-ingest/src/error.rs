@@ -153,6 +153,12 @@ pub enum IngestError {
         /// Which files have such a thing.
         owners: &'static str,
     },
+    /// Several time steps were asked for of a file that does not have them.
+    #[error("{}: the file has no several time steps: name one that has, or a file for every step", path.display())]
+    OneTime {
+        /// The file.
+        path: PathBuf,
+    },
     /// A time step that the file does not have.
     #[error(
         "{}: time step {step} is out of range: the file has {count}, numbered from 0; name one of them, or none for \

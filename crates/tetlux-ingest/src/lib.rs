@@ -60,7 +60,7 @@ pub use cache::{Cache, CacheEntry, CacheOutcome, Extras, Loaded, Miss, read_cach
 pub use error::{IngestError, Place};
 pub use expression::{Expression, ExpressionError};
 pub use mixed::{MixedCells, MixedMesh, StructuredGrid};
-pub use read::{ReadOptions, read, read_tet_mesh};
+pub use read::{ReadOptions, read, read_tet_mesh, time_steps};
 pub use stuffing::{DISTANCE, Filled, fill};
 pub use surface::{Surface, SurfaceReport};
 pub use tetlux_mesh::TetMesh;

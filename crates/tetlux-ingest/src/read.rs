@@ -140,6 +140,21 @@ pub(crate) fn read_files(path: &Path, options: &ReadOptions, files: &mut Files) 
     Ok(mesh)
 }
 
+/// The number of time steps of a file with several, at least 2.
+///
+/// # Errors
+/// [`IngestError::Unused`] if files of its format have none, [`IngestError::OneTime`] if this one has none or one, or
+/// what is wrong with it.
+pub fn time_steps(path: &Path, options: &ReadOptions) -> Result<usize, IngestError> {
+    // No file has so many: each reader then says how many there are.
+    let beyond = ReadOptions { time: Some(usize::MAX), ..options.clone() };
+    match read(path, &beyond) {
+        Err(IngestError::NoSuchTimeStep { count, .. }) if count > 1 => Ok(count as usize),
+        Ok(_) | Err(IngestError::NoSuchTimeStep { .. }) => Err(IngestError::OneTime { path: path.into() }),
+        Err(error) => Err(error),
+    }
+}
+
 /// Reads a file and makes tetrahedra of its cells: [`read`] and [`MixedMesh::tetrahedralize`].
 pub fn read_tet_mesh(path: &Path, options: &ReadOptions, split: Split) -> Result<TetMesh, IngestError> {
     read(path, options)?.tetrahedralize(split)

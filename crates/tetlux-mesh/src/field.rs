@@ -92,6 +92,15 @@ pub struct ScalarField {
     pub missing: usize,
 }
 
+impl ScalarField {
+    /// Whether another has the same values in the same places, bit for bit: missing ones are equal to themselves.
+    pub fn is_same(&self, other: &ScalarField) -> bool {
+        self.location == other.location
+            && self.values.len() == other.values.len()
+            && self.values.iter().zip(&other.values).all(|(a, b)| a.to_bits() == b.to_bits())
+    }
+}
+
 pub(crate) fn finite_range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     let mut range: Option<[f64; 2]> = None;
     for v in values.filter(|v| v.is_finite()) {
@@ -114,6 +123,22 @@ mod tests {
         }
         assert!(magnitude(&[f64::NAN, 1.0]).is_nan());
         assert!(magnitude(&[1.0, f64::NAN]).is_nan());
+    }
+
+    #[test]
+    fn a_field_is_the_same_bit_for_bit() {
+        let field = |values: Vec<f64>, location| ScalarField {
+            name: "f".into(),
+            location,
+            values,
+            range: [0.0, 1.0],
+            missing: 1,
+        };
+        let one = field(vec![0.0, 1.0, f64::NAN], Location::Point);
+        assert!(one.is_same(&ScalarField { name: "g".into(), ..one.clone() }));
+        assert!(!one.is_same(&field(vec![-0.0, 1.0, f64::NAN], Location::Point)));
+        assert!(!one.is_same(&field(one.values.clone(), Location::Cell)));
+        assert!(!one.is_same(&field(vec![0.0, 1.0], Location::Point)));
     }
 
     #[test]

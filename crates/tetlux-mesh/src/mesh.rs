@@ -1,6 +1,7 @@
 //! The tetrahedral mesh.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use crate::field::finite_range;
 use crate::{Assembly, Component, Field, Location, MeshError, Report, ScalarField};
@@ -118,8 +119,8 @@ impl TetMesh {
             }
         };
         match scalar.location {
-            Location::Point => self.cells.iter().map(|c| range(c.map(|v| scalar.values[v as usize]))).collect(),
-            Location::Cell => scalar.values.iter().map(|&v| range([v; 4])).collect(),
+            Location::Point => self.cells.par_iter().map(|c| range(c.map(|v| scalar.values[v as usize]))).collect(),
+            Location::Cell => scalar.values.par_iter().map(|&v| range([v; 4])).collect(),
         }
     }
 

@@ -120,10 +120,11 @@ pub fn weights_direct(a: f32, b: f32) -> [f32; 3] {
 
 /// The share of a segment between the depths `ends`, front and back, that lies before a depth.
 pub fn share_before(limit: f32, ends: [f32; 2]) -> f32 {
-    if limit >= ends[1] {
+    let [front, back] = ends;
+    if limit >= back {
         return 1.0;
     }
-    ((limit - ends[0]) / (ends[1] - ends[0]).max(1e-30)).clamp(0.0, 1.0)
+    ((limit - front) / (back - front).max(1e-30)).clamp(0.0, 1.0)
 }
 
 /// As weights_direct, with the mean luminance throughout: a model, wrong by up to half of alpha in thick segments.

@@ -1,5 +1,6 @@
 //! 1D transfer functions: luminance and opacity, each piecewise linear in the scalar, with its own nodes.
 
+mod bounds;
 #[cfg(test)]
 mod tests;
 
@@ -207,7 +208,7 @@ impl TransferFunction {
     }
 
     /// The pieces and the two constant ends, without those of zero opacity.
-    fn visible_pieces(&self) -> impl Iterator<Item = Piece> {
+    pub(crate) fn visible_pieces(&self) -> impl Iterator<Item = Piece> {
         let constant =
             |s: f64, opacity: f64, rgb: [f64; 3]| Piece { s: [s; 2], opacity: [opacity; 2], luminance: [rgb; 2] };
         let (low, high) = (f64::NEG_INFINITY, f64::INFINITY);

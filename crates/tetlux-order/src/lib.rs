@@ -35,5 +35,5 @@ pub use centroid::centroid;
 pub use facts::Facts;
 pub use method::{Method, UnknownMethod};
 pub use order::{Order, OrderReport, Stage};
-pub use orderer::Orderer;
+pub use orderer::{Orderer, Thorough};
 pub use sampling::{Eye, Sampling};

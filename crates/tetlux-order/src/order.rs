@@ -49,6 +49,12 @@ pub struct OrderReport {
     pub method: Method,
     /// Why this method, in a few words.
     pub reason: &'static str,
+    /// It is the last order: nothing has changed since.
+    pub reused: bool,
+    /// Rays were searched for gaps.
+    pub gap_pass: bool,
+    /// Cells that occlude one another in a cycle were searched for.
+    pub component_search: bool,
     /// Signs of faces that single precision could not decide.
     pub signs_in_double: usize,
     /// Of these, signs that double precision could not decide either.

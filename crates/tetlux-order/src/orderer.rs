@@ -17,6 +17,7 @@ pub struct Orderer {
     /// Facts, view and method of the last order.
     last: Option<(u64, Sampling, Method)>,
     order: Order,
+    thorough: Thorough,
     /// Of every face, on which side of it the eye is.
     codes: Vec<u8>,
     /// Of every cell, its arrows and what the search did.
@@ -28,10 +29,28 @@ pub struct Orderer {
     seeds: Vec<u32>,
 }
 
+/// What is searched for though it is known that nothing will be found: to measure what not searching saves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Thorough {
+    /// Search again though nothing has changed.
+    pub again: bool,
+    /// Search convex meshes for gaps.
+    pub gaps: bool,
+    /// Search for cycles before any is met.
+    pub components: bool,
+}
+
 impl Orderer {
     /// One that has found none yet.
     pub fn new() -> Orderer {
         Orderer::default()
+    }
+
+    /// Does from now on more than it must.
+    pub fn set_thorough(&mut self, thorough: Thorough) {
+        if self.thorough != thorough {
+            (self.thorough, self.last) = (thorough, None);
+        }
     }
 
     /// The order of a mesh's cells, front to back: the last one if nothing has changed since.
@@ -39,7 +58,8 @@ impl Orderer {
     /// `facts` must be those of `mesh`; those of another one give an order by index.
     pub fn order(&mut self, mesh: &TetMesh, facts: &Facts, sampling: &Sampling, method: Method) -> &Order {
         let asked = Some((facts.id, *sampling, method));
-        if self.last == asked {
+        if self.last == asked && !self.thorough.again {
+            self.order.report.reused = true;
             self.order.report.reason = "nothing has changed since the last order";
             self.order.report.stages.clear();
             return &self.order;
@@ -83,7 +103,7 @@ impl Orderer {
     }
 
     fn by_arrows(&mut self, mesh: &TetMesh, facts: &Facts, sampling: &Sampling, method: Method) {
-        let Orderer { order, codes, states, gaps, search, far, seeds, .. } = self;
+        let Orderer { order, thorough, codes, states, gaps, search, far, seeds, .. } = self;
         let Order { cells, groups, report } = order;
         let stages = &mut report.stages;
         let eye = viewpoint(mesh, sampling);
@@ -92,7 +112,8 @@ impl Orderer {
         (report.signs_in_double, report.signs_exact) = (doubts.in_double, doubts.exact);
 
         gaps.arrows.clear();
-        if method == Method::Exact && !facts.convex() {
+        if method == Method::Exact && (thorough.gaps || !facts.convex()) {
+            report.gap_pass = true;
             let rays = Rays::new(sampling, mesh.origin());
             timed(stages, "gaps", || gaps.find(mesh, facts, codes, &rays, inside));
             report.gap_arrows = gaps.arrows.len();
@@ -104,7 +125,9 @@ impl Orderer {
         }
         let graph = Graph { neighbors: mesh.neighbors(), gaps: &gaps.arrows };
         mark_gaps(&gaps.arrows, states);
-        if !timed(stages, "search", || search.sort(graph, states, seeds, cells)) {
+        let sorted = !thorough.components && timed(stages, "search", || search.sort(graph, states, seeds, cells));
+        if !sorted {
+            report.component_search = true;
             timed(stages, "groups", || {
                 cell_arrows(facts, codes, states);
                 mark_gaps(&gaps.arrows, states);

@@ -5,6 +5,9 @@ pub(crate) mod look;
 pub(crate) mod march;
 mod picture;
 pub(crate) mod pipelines;
+mod resident;
+#[cfg(test)]
+mod size_tests;
 mod spent;
 mod stretch;
 mod surfaces;
@@ -14,7 +17,7 @@ pub(crate) mod variant;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use tetlux_scene::{Device, Plan};
+use tetlux_scene::{Device, Plan, Skip};
 
 use crate::look::Spent;
 use crate::march::March;
@@ -23,6 +26,7 @@ use crate::{Job, RenderError, Resources};
 use look::LookVariant;
 use march::Marcher;
 use pipelines::Pipelines;
+use resident::Resident;
 pub(crate) use stretch::LARGEST_GROUP;
 use variant::Variant;
 
@@ -49,6 +53,7 @@ struct Open {
     queue: wgpu::Queue,
     /// Why the device is gone, once it is.
     lost: Arc<OnceLock<String>>,
+    resident: Resident,
 }
 
 /// What a picture came to.
@@ -120,7 +125,8 @@ impl Gpu {
             stages.run("draw", || self.checked(open, || marcher.draw(open, &variant, job, march)))?
         } else {
             let cells = pipelines(variant, stages)?;
-            let sorted = job.groups.iter().any(|group| group.end - group.start <= LARGEST_GROUP);
+            let all = job.kept.contains(Skip::Pipelines) && job.entry_pieces.is_empty();
+            let sorted = all || job.groups.iter().any(|group| group.end - group.start <= LARGEST_GROUP);
             let groups = if sorted { Some(pipelines(variant.of_groups(), stages)?) } else { None };
             let draw = || frame::draw(open, &variant, &cells, groups.as_deref(), job);
             stages.run("draw", || self.checked(open, draw))?
@@ -157,7 +163,7 @@ impl Gpu {
             // The first reason counts.
             let _ = told.set(format!("{reason:?}: {message}").trim_end_matches([':', ' ']).to_string());
         });
-        Ok(Open { device, queue, lost })
+        Ok(Open { device, queue, lost, resident: Resident::default() })
     }
 
     /// Runs work on the device and turns what the driver reports into an error.

@@ -8,7 +8,7 @@
 //! The CPU back end bins cells into tiles of pixels and draws vectors of pixels, with the best instruction set that the
 //! processor has: pictures are the same bit for bit every time and on any number of threads, and may differ by roundings
 //! between instruction sets. It leaves out what lies behind pixels whose transmittance is below a thousandth of the
-//! scene's `max_error`: a pixel changes by less than that share of it.
+//! scene's `max_error` (a tenth if that is above 1e-3): a pixel changes by less than that share of it.
 //!
 //! ```
 //! use tetlux_mesh::{Field, TetMesh, procedural};
@@ -52,7 +52,9 @@ mod model;
 mod order;
 mod published;
 mod resources;
+mod saved;
 mod seen;
+mod sequence;
 mod stage;
 mod tables;
 mod tiles;
@@ -62,6 +64,8 @@ pub use look::Spent;
 pub use model::Model;
 pub use order::sampling;
 pub use resources::Resources;
+pub use saved::bytes_saved;
+pub use sequence::frames;
 pub use stage::{Stage, Stages};
 pub use tables::table_specs;
 
@@ -72,7 +76,9 @@ use tetlux_image::Image;
 use tetlux_mesh::ScalarField;
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::{OrderReport, Orderer};
-use tetlux_scene::{Backend, CellProjection, Classification, Device, Integrator, Plan, Scene, TablePrecision};
+use tetlux_scene::{
+    Backend, CellProjection, Classification, Device, Integrator, Plan, Scene, Skip, SkipSet, TablePrecision,
+};
 use tetlux_tables::{Table, TableKind, TableSpec};
 
 use crate::attributes::Attributes;
@@ -98,6 +104,8 @@ pub struct Frame {
     pub resources: Resources,
     /// How the cells were ordered.
     pub order: OrderReport,
+    /// The mesh was prepared, and uploaded if that is how it is drawn, for an earlier picture.
+    pub mesh_reused: bool,
     /// The pieces that it took to keep to the error budget, where segments are shaded one by one.
     pub spent: Option<Spent>,
     /// Where the picture may be wrong, found on the way.
@@ -106,7 +114,7 @@ pub struct Frame {
 
 /// What a picture is made of.
 struct Job<'a> {
-    mesh: &'a DeviceMesh,
+    mesh: &'a Arc<DeviceMesh>,
     scalar: &'a ScalarField,
     view: DeviceView,
     eye: EyeSpace,
@@ -136,21 +144,23 @@ struct Job<'a> {
     backdrop: Option<Backdrop>,
     /// Alpha beyond which a pixel is as good as opaque.
     opaque: f32,
+    /// What is done though it need not be.
+    kept: SkipSet,
     /// Width and height in pixels.
     size: [u32; 2],
 }
 
-/// Share of the allowed error that may lie behind pixels that count as opaque.
-const HIDDEN_ERROR: f64 = 1e-3;
+/// An alpha that no pixel has.
+const NEVER_OPAQUE: f32 = 2.0;
 
 /// Alpha beyond which a pixel is as good as opaque: what lies behind it, however bright, changes it by no more than
-/// [`HIDDEN_ERROR`] of the error that is allowed.
-fn opaque(max_error: f64, pieces: &[Piece], look: Option<&Look>, backdrop: Option<&Backdrop>) -> f32 {
+/// `hidden`. If that is 0, no pixel counts as opaque.
+fn opaque(hidden: f64, pieces: &[Piece], look: Option<&Look>, backdrop: Option<&Backdrop>) -> f32 {
     let luminances = pieces.iter().flat_map(|p| [p.low, p.high]).flat_map(|c| [c[0], c[1], c[2]]);
     let brightest = f64::from(luminances.fold(1.0, f32::max));
     let brightest = look.map_or(brightest, |look| brightest.max(look.brightest));
     let brightest = backdrop.map_or(brightest, |backdrop| brightest.max(backdrop.brightest().into()));
-    (1.0 - HIDDEN_ERROR * max_error / brightest) as f32
+    if hidden > 0.0 { (1.0 - hidden / brightest) as f32 } else { NEVER_OPAQUE }
 }
 
 /// Renders by plan; holds the graphics device once one has been used, and the last order.
@@ -212,18 +222,21 @@ impl Renderer {
         let mut stages = Stages::default();
         let (mesh, view) = (model.mesh(), &plan.view);
         let mut order = order::order(&self.orderer, model, plan, &mut stages);
-        let (device_mesh, extinction, attributes) = stages.run("prepare", || {
-            let device_mesh = DeviceMesh::new(mesh, &scene.scalar);
-            let extinction = 1.0 / (scene.unit_distance * device_mesh.scale);
-            let attributes = Attributes::new(scene, plan, extinction);
-            (device_mesh, extinction, attributes)
-        });
+        let (device_mesh, mesh_reused) =
+            stages.run("prepare", || model.prepared(&scene.scalar, plan.may_skip(Skip::Uploads)));
+        if plan.kept.contains(Skip::Gradients) {
+            stages.run("gradients", || std::hint::black_box(mesh.vertex_gradients(&scene.scalar)));
+        }
+        let extinction = 1.0 / (scene.unit_distance * device_mesh.scale);
+        let attributes = stages.run("classify", || Attributes::new(scene, plan, extinction));
         if plan.colors.as_ref().is_some_and(|colors| colors.len() != mesh.points().len()) {
             return Err(RenderError::Missing("luminance and opacity at every point"));
         }
         // Of a function of two fields one piece of nothing.
-        let pieces = scene
-            .transfer()
+        let pieces = plan
+            .transfer
+            .as_ref()
+            .or(scene.transfer())
             .map_or_else(|| vec![Piece::default()], |transfer| pieces(transfer, scene.scalar.range, extinction));
         let weights = match plan.integrator {
             Integrator::Average => Weights::Average,
@@ -254,7 +267,7 @@ impl Renderer {
             .then(|| stages.run("entries", || March::new(mesh, &device_mesh, &lens, &plan.cells, view.size)));
         let backdrop = (!scene.surfaces.is_empty())
             .then(|| stages.run("surfaces", || Backdrop::new(&scene.surfaces, &eye, device_mesh.scale, view.size)));
-        let opaque = opaque(scene.method.max_error, &pieces, look.as_ref(), backdrop.as_ref());
+        let opaque = opaque(plan.hidden, &pieces, look.as_ref(), backdrop.as_ref());
         let job = Job {
             mesh: &device_mesh,
             scalar: &scene.scalar,
@@ -274,6 +287,7 @@ impl Renderer {
             march,
             backdrop,
             opaque,
+            kept: plan.kept,
             size: view.size,
         };
         let Drawn { mut pixels, resources, spent } = match plan.backend {
@@ -289,7 +303,7 @@ impl Renderer {
         }
         let warnings = order::doubts(&order, plan);
         let image = Image::from_pixels(view.size[0], view.size[1], pixels)?;
-        Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report, spent, warnings })
+        Ok(Frame { image, stages: stages.into_vec(), resources, order: order.report, mesh_reused, spent, warnings })
     }
 }
 

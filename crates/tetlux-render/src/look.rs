@@ -22,19 +22,13 @@ use tetlux_optics::two_field_f32;
 use tetlux_optics::vertex_f32;
 use tetlux_optics::widget_f32::{self, Widget};
 use tetlux_optics::widgets_f32::{self, Integrated};
-use tetlux_scene::{Lighting, Scene};
+use tetlux_scene::{COLOR_SHARE, COLOR_SHARE_LIT, LIGHT_SHARE, Lighting, Scene};
 
 use crate::RenderError;
 use crate::attributes::Attributes;
 use crate::device_mesh::normalised;
 use crate::eye_space::EyeSpace;
 use crate::published::Published;
-
-/// Shares of the allowed error that the colour of a segment may take, without light and with it, and the light. The
-/// rest is for single precision and for what is hidden.
-const COLOR_SHARE: f64 = 0.8;
-const COLOR_SHARE_LIT: f64 = 0.4;
-const LIGHT_SHARE: f64 = 0.4;
 
 /// What single precision cannot hold is not asked for.
 const LEAST_ERROR: f64 = 1e-6;

@@ -2,8 +2,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use tetlux_order::{Method, Order, Orderer, Sampling};
-use tetlux_scene::{Backend, Order as Asked, Plan, View};
+use tetlux_order::{Method, Order, Orderer, Sampling, Thorough};
+use tetlux_scene::{Backend, Order as Asked, Plan, Skip, View};
 
 use crate::gpu::LARGEST_GROUP;
 use crate::{Model, Stages};
@@ -34,6 +34,9 @@ pub(crate) fn order(orderer: &Mutex<Orderer>, model: &Model, plan: &Plan, stages
         plan.cells.iter().for_each(|&cell| drawn[cell as usize] = true);
         // An orderer that panicked is as good as a new one: it finds the whole order again.
         let mut orderer = orderer.lock().unwrap_or_else(PoisonError::into_inner);
+        let [again, gaps, components] =
+            [Skip::LastOrder, Skip::Gaps, Skip::Components].map(|skip| plan.kept.contains(skip));
+        orderer.set_thorough(Thorough { again, gaps, components });
         let order = orderer.order(model.mesh(), model.facts(), &sampling(&plan.view), method);
         order.filter(|cell| drawn[cell as usize])
     })

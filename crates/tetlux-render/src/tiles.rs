@@ -24,16 +24,20 @@ use std::ops::Range;
 
 use fearless_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
+use tetlux_scene::Skip;
 
 use crate::Job;
 use crate::look::Spent;
 use crate::stage::Stages;
 use bins::{Bins, TILE};
 use ramp::Ramp;
-use record::{Chunk, SetUp};
+use record::{CHUNK, Chunk, SetUp};
 use walk::{Light, Walk};
 
-/// Cells that are set up at a time: bounds the memory of their records, 128 bytes a cell.
+/// Bytes of a cell that is set up: its record, and the tiles of its box.
+pub(crate) const CELL_BYTES: u64 = (size_of::<Chunk>() / CHUNK) as u64;
+
+/// Cells that are set up at a time: bounds the memory of their records, 136 bytes a cell.
 const BATCH: usize = 1 << 20;
 
 /// Draws a picture: premultiplied pixels, top row first; and what segments took that were shaded one by one.
@@ -44,7 +48,8 @@ pub(crate) fn draw(job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
 /// The same with a given instruction set.
 fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     let eye = &job.eye;
-    let ramps: Vec<Ramp> = job.pieces.iter().map(Ramp::new).collect();
+    let all_weights = job.kept.contains(Skip::Weights);
+    let ramps: Vec<Ramp> = job.pieces.iter().map(|piece| Ramp::new(piece, all_weights)).collect();
     let light = Light {
         ramps: &ramps,
         model: job.weights,
@@ -53,11 +58,13 @@ fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spen
         opaque: job.opaque,
         backdrop: job.backdrop.as_ref().map(|backdrop| (backdrop, eye.offset.z as f32)),
         width: job.size[0] as usize,
+        cut_all: job.kept.contains(Skip::Cuts),
         look: job.look.as_ref(),
         further: &[],
     };
     let points = stages.run("project", || record::points(job.mesh, job.scalar, eye));
-    let set_up = SetUp { mesh: job.mesh, points: &points, eye, pieces: job.pieces, size: job.size };
+    let set_up =
+        SetUp { mesh: job.mesh, points: &points, eye, pieces: job.pieces, cut_all: light.cut_all, size: job.size };
     let columns = bins::tiles(job.size)[0] as usize;
     let fields = job.look.as_ref().map_or(&[][..], |look| &look.further);
     let mut pixels = vec![[0.0; 4]; job.size[0] as usize * job.size[1] as usize];

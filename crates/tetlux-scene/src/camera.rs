@@ -1,6 +1,6 @@
 //! Cameras, in VTK's terms.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use crate::{SceneError, View};
 
@@ -53,6 +53,18 @@ impl Camera {
         }
     }
 
+    /// The same camera turned about the axis of view up through the focal point, counter-clockwise seen from above:
+    /// VTK's azimuth. View up stays as it is. By 0 the camera is the same bit for bit.
+    #[must_use]
+    pub fn turned(&self, degrees: f64) -> Camera {
+        let axis = self.view_up.normalize_or_zero();
+        if degrees == 0.0 || axis == DVec3::ZERO {
+            return *self;
+        }
+        let arm = DQuat::from_axis_angle(axis, degrees.to_radians()) * (self.position - self.focal_point);
+        Camera { position: self.focal_point + arm, ..*self }
+    }
+
     /// The camera resolved for a picture of this size.
     pub fn view(&self, size: [u32; 2]) -> Result<View, SceneError> {
         let bad = |reason: String| Err(SceneError::Camera { reason });
@@ -95,5 +107,27 @@ impl Camera {
             orthographic: matches!(self.projection, Projection::Orthographic { .. }),
             near: self.near,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_goes_round_the_focal_point() {
+        let camera = Camera {
+            position: DVec3::new(4.0, 2.0, 5.0),
+            focal_point: DVec3::new(1.0, 2.0, 3.0),
+            view_up: DVec3::new(0.0, 0.0, 2.0),
+            projection: Projection::Perspective { view_angle: 30.0 },
+            near: 0.0,
+        };
+        // From the focal point (3, 0, 2): a quarter about z makes (0, 3, 2).
+        let turned = camera.turned(90.0);
+        assert!(turned.position.distance(DVec3::new(1.0, 5.0, 5.0)) < 1e-14, "{turned:?}");
+        assert_eq!(turned, Camera { position: turned.position, ..camera });
+        assert_eq!(camera.turned(0.0), camera);
+        assert!(camera.turned(360.0).position.distance(camera.position) < 1e-14);
     }
 }

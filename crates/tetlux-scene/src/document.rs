@@ -177,6 +177,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
             target: method.target,
             pieces: method.pieces,
             max_error: max_error.unwrap_or(Method::default().max_error),
+            no_skip: Method::default().no_skip,
         },
         name: path.display().to_string(),
     })

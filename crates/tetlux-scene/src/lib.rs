@@ -18,6 +18,7 @@
 //! # Ok::<(), tetlux_scene::SceneError>(())
 //! ```
 
+mod budget;
 mod camera;
 mod culling;
 mod document;
@@ -31,10 +32,13 @@ mod look;
 mod method;
 mod one_peak;
 mod plan;
+mod planner;
 mod reason;
+mod skip;
 mod surface;
 mod view;
 
+pub use budget::{COLOR_SHARE, COLOR_SHARE_LIT, LIGHT_SHARE, Stated, Term};
 pub use camera::{Camera, Projection};
 pub use culling::CellBoxes;
 pub use emphasis::Emphasized;
@@ -46,7 +50,10 @@ pub use method::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, TablePrecision, Target,
     UnknownName, parse_name,
 };
-pub use plan::{Device, Plan, Skips};
+pub use plan::{Device, Plan};
+
+pub use planner::{Planner, Skips};
+pub use skip::{Fate, Skip, SkipLine, SkipSet};
 pub use surface::{Surface, SurfaceSpec};
 pub use view::View;
 

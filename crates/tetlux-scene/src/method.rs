@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::SkipSet;
+
 /// Declares an enum whose values are spelt in kebab-case in scene files and on the command line.
 macro_rules! named {
     ($(#[$outer:meta])* $name:ident { $($(#[$inner:meta])* $value:ident),+ $(,)? }) => {
@@ -219,8 +221,10 @@ pub struct Method {
     /// Equal pieces a segment of [`Integrator::Approximate`], 1 to [`Method::MOST_PIECES`]; none:
     /// [`Method::PUBLISHED_PIECES`].
     pub pieces: Option<u32>,
-    /// Largest error of a pixel's colour or alpha, linear, that `compare` accepts.
+    /// Largest error of a pixel's colour or alpha, linear: what the plan chooses keeps to it, and `compare` checks it.
     pub max_error: f64,
+    /// What is done though the scene does not need it, to measure what skipping saves.
+    pub no_skip: SkipSet,
 }
 
 impl Default for Method {
@@ -237,6 +241,7 @@ impl Default for Method {
             pieces: None,
             // A quarter of an 8-bit step.
             max_error: 1e-3,
+            no_skip: SkipSet::default(),
         }
     }
 }

@@ -1,21 +1,22 @@
 //! What is done for a scene, and what is not, and why: decided before anything runs.
 
+mod skips;
+
 use std::sync::Arc;
 
-use glam::DVec3;
-use rayon::prelude::*;
 use tetlux_mesh::{ScalarField, TetMesh};
 use tetlux_optics::Classification::Widgets;
-use tetlux_optics::widget::Rectangle;
+use tetlux_optics::TransferFunction;
 
+use crate::budget::{of_rounding, spend, state};
 use crate::file::gradient_name;
 use crate::integral::{choose_integrator, integral_of};
 use crate::look;
 use crate::one_peak::beyond_published;
 use crate::reason::{of_classification, of_interpolation, of_projection, of_table_precision, of_target};
 use crate::{
-    Backend, CellBoxes, CellProjection, Classification, Integrator, Interpolation, Method, Order, Scene, SceneError,
-    TablePrecision, Target, View,
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Planner, Scene, SceneError,
+    Skip, SkipLine, SkipSet, Skips, Stated, TablePrecision, Target, View,
 };
 
 /// What a plan needs to know of a graphics adapter.
@@ -29,19 +30,6 @@ pub struct Device {
     pub blends_f32: bool,
     /// It has textures of 16-bit normalised integers.
     pub norm16: bool,
-}
-
-/// Cells that are not drawn, by the first reason that holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Skips {
-    /// A vertex has no finite value: nothing can be classified.
-    pub no_data: usize,
-    /// Opacity is zero on the cell's whole scalar range; with an emphasis, at its four vertices.
-    pub transparent: usize,
-    /// Zero volume: no ray is inside for any length.
-    pub flat: usize,
-    /// Outside the frustum, or behind the eye.
-    pub outside: usize,
 }
 
 /// The decisions for one picture of one mesh.
@@ -74,6 +62,16 @@ pub struct Plan {
     pub cells: Vec<u32>,
     /// The cells that are not drawn.
     pub skips: Skips,
+    /// The transfer function with fewer nodes, where the error budget allows that.
+    pub transfer: Option<TransferFunction>,
+    /// Error of a pixel that may lie behind others that count as opaque; 0 if none do.
+    pub hidden: f64,
+    /// All that is not done, and why, or why it must be.
+    pub lines: Vec<SkipLine>,
+    /// What is done though it need not be.
+    pub kept: SkipSet,
+    /// The error that the picture is stated to have.
+    pub stated: Stated,
     /// Each decision and its reason.
     pub reasons: Vec<(&'static str, String)>,
     /// What may spoil the picture.
@@ -87,30 +85,10 @@ impl Plan {
     ///
     /// A camera that sees nothing, or a combination of backend, order and device that cannot be.
     pub fn new(scene: &Scene, mesh: &TetMesh, device: Option<&Device>) -> Result<Plan, SceneError> {
-        Plan::decide(scene, mesh, device, None)
+        Planner::new(mesh).plan(scene, device)
     }
 
-    /// The same for another function of the same two fields, whose ranges in the mesh's cells are kept: those of
-    /// [`Scene::scalar`] and [`Scene::second`]. Widgets alone take them.
-    ///
-    /// # Errors
-    ///
-    /// As [`Plan::new`].
-    pub fn with_boxes(
-        scene: &Scene,
-        mesh: &TetMesh,
-        device: Option<&Device>,
-        boxes: &CellBoxes,
-    ) -> Result<Plan, SceneError> {
-        Plan::decide(scene, mesh, device, Some(boxes))
-    }
-
-    fn decide(
-        scene: &Scene,
-        mesh: &TetMesh,
-        device: Option<&Device>,
-        boxes: Option<&CellBoxes>,
-    ) -> Result<Plan, SceneError> {
+    pub(crate) fn with(planner: &Planner, scene: &Scene, device: Option<&Device>) -> Result<Plan, SceneError> {
         let view = scene.camera.view(scene.size)?;
         let mut warnings = Vec::new();
         let method = method_of(scene)?;
@@ -125,10 +103,14 @@ impl Plan {
             Classification::Vertex if scene.lighting.is_some() => choose_cpu(&method)?,
             _ => choose_backend(&method, device)?,
         };
+        let (first, second) = planner.ranges(scene);
+        let measures = planner.measures(scene, &first);
+        let spent = spend(scene, &measures, backend);
         let projection = choose_projection(&method, backend, device);
-        let (order, order_reason) = choose_order(scene, integrator, projection);
+        let (order, order_reason) = choose_order(scene, integrator, projection, spent.order);
         let (target, target_reason) = choose_target(method.target, projection, device);
         let (table_precision, fallback) = choose_table_precision(method.table_precision, device);
+        let integrator = if spent.average.is_some() { Integrator::Average } else { integrator };
         let decided = Method { backend, order, projection, integrator, table_precision, target, ..method.decided() };
         let tables = integrator.uses_table();
         warnings.extend(fallback.filter(|_| tables));
@@ -136,14 +118,18 @@ impl Plan {
         if backend == Backend::Gpu && target != Target::Rgba32f {
             warnings.push(format!("target {target}: {}", of_target(target)));
         }
-        let colors = scene.emphasis.as_ref().map(|emphasis| emphasis.seen(mesh, &view));
-        let (cells, skips) = visible_cells(scene, mesh, &view, boxes, colors.as_deref());
+        let kept = scene.method.no_skip;
+        let colors = scene.emphasis.as_ref().map(|emphasis| emphasis.seen(planner.mesh(), &view));
+        let (cells, skips) =
+            planner.cells(scene, &view, (&first, second.as_ref()), colors.as_deref(), spent.faint, kept);
+        let stated = state(scene, &measures, &decided, &spent, skips.faint > 0);
+        warnings.extend(stated.shortfall(scene.method.max_error));
         if skips.no_data > 0 {
             warnings.push(format!("{} cells have vertices without a finite value and are left out", skips.no_data));
         }
         let pieces = scene.method.pieces.unwrap_or(Method::PUBLISHED_PIECES);
         if let (Integrator::Analytic, Widgets(function)) = (integrator, &scene.classification) {
-            warnings.extend(beyond_published(scene, mesh, &cells, function));
+            warnings.extend(beyond_published(scene, planner.mesh(), &cells, function));
         }
         let mut reasons =
             vec![("backend", format!("{backend}: {backend_reason}")), ("order", format!("{order}: {order_reason}"))];
@@ -172,15 +158,18 @@ impl Plan {
         reasons.push((
             "cells",
             format!(
-                "{} of {} drawn; {} transparent, {} outside the view, {} flat, {} without data are skipped",
+                "{} of {} drawn; {} transparent, {} faint, {} outside the view, {} flat, {} without data are skipped",
                 cells.len(),
-                mesh.cells().len(),
+                planner.mesh().cells().len(),
                 skips.transparent,
+                skips.faint,
                 skips.outside,
                 skips.flat,
                 skips.no_data
             ),
         ));
+        reasons.push(("error", format!("{stated} (budget {:.1e})", scene.method.max_error)));
+        let lines = skips::lines(scene, planner.mesh(), &decided, &spent, &skips);
         let Method { projection, interpolation, classification, .. } = decided;
         Ok(Plan {
             backend,
@@ -196,9 +185,19 @@ impl Plan {
             colors,
             cells,
             skips,
+            transfer: spent.transfer.map(|(transfer, _)| transfer),
+            hidden: spent.hidden,
+            lines,
+            kept,
+            stated,
             reasons,
             warnings,
         })
+    }
+
+    /// Whether something may be left undone: it is not asked to be done all the same.
+    pub fn may_skip(&self, skip: Skip) -> bool {
+        !self.kept.contains(skip)
     }
 }
 
@@ -258,9 +257,11 @@ fn of_gradients(scene: &Scene) -> &'static str {
 
 /// The back end of light on what is classified at the vertices.
 fn choose_cpu(method: &Method) -> Result<(Backend, String), SceneError> {
-    const WHAT: &str = "light on what is classified at the vertices";
+    const WHAT: &str = "light with classification \"vertex\"";
     if method.backend == Backend::Gpu {
-        return Err(SceneError::Method(format!("{WHAT} is drawn by the CPU back end alone: use --backend cpu")));
+        return Err(SceneError::Method(format!(
+            "{WHAT} is drawn by the CPU back end alone: use --backend cpu, or use post-exact"
+        )));
     }
     if let Some(other) = method.gpu_only() {
         return Err(SceneError::Method(format!(
@@ -308,6 +309,10 @@ fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, 
             None if d.software => {
                 Ok((Backend::Cpu, format!("{} is this processor too, and the direct way is exact and faster", d.name)))
             }
+            None if method.max_error < of_rounding(Backend::Gpu) => Ok((
+                Backend::Cpu,
+                format!("it rounds less than {} does, as an error of {:.1e} asks for", d.name, method.max_error),
+            )),
             None if !d.blends_f32 && !marches => {
                 Ok((Backend::Cpu, format!("{} cannot blend 32-bit floating-point targets", d.name)))
             }
@@ -372,115 +377,34 @@ fn choose_table_precision(asked: TablePrecision, device: Option<&Device>) -> (Ta
     }
 }
 
-fn choose_order(scene: &Scene, integrator: Integrator, projection: CellProjection) -> (Order, String) {
+fn choose_order(
+    scene: &Scene,
+    integrator: Integrator,
+    projection: CellProjection,
+    affordable: Option<f64>,
+) -> (Order, String) {
     if projection == CellProjection::March {
         return (Order::None, "the march finds the next cell itself".into());
     }
     // What absorbs little may glow as much as what absorbs a lot, where emission is a density: order matters then.
-    let one_luminance = scene.single_luminance().is_some() && !integrator.is_published_bivariate();
-    match scene.method.order {
-        Order::Auto if one_luminance => {
+    let one_luminance = scene.single_luminance().is_some()
+        && !integrator.is_published_bivariate()
+        && !scene.method.no_skip.contains(Skip::Order);
+    match (scene.method.order, affordable) {
+        (Order::Auto, _) if one_luminance => {
             (Order::None, "there is one luminance throughout, so the order does not matter".into())
         }
-        Order::Auto => (Order::Exact, "right along every ray of the picture, on every mesh".into()),
-        asked => (asked, "as asked".into()),
+        (Order::Auto, Some(error)) => {
+            (Order::None, format!("the volume is so thin that no order changes a pixel by more than {error:.1e}"))
+        }
+        (Order::Auto, None) => (Order::Exact, "right along every ray of the picture, on every mesh".into()),
+        (asked, _) => (asked, "as asked".into()),
     }
-}
-
-/// Why a cell is not drawn.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Fate {
-    Drawn,
-    NoData,
-    Transparent,
-    Flat,
-    Outside,
-}
-
-/// Of each cell whether it has no data, or nothing of it can be seen; of `colors`, if any, in place of the classification.
-fn unseen(scene: &Scene, mesh: &TetMesh, boxes: Option<&CellBoxes>, colors: Option<&[[f64; 4]]>) -> Vec<Option<Fate>> {
-    let ranges = || mesh.scalar_ranges(&scene.scalar);
-    let second = || scene.second.as_ref().map(|second| mesh.scalar_ranges(second));
-    let fate = |has_data: bool, visible: bool| match (has_data, visible) {
-        (false, _) => Some(Fate::NoData),
-        (true, false) => Some(Fate::Transparent),
-        (true, true) => None,
-    };
-    if let Widgets(function) = &scene.classification {
-        let made;
-        let boxes = match boxes {
-            Some(boxes) => boxes,
-            None => {
-                made = CellBoxes::new(&ranges(), &second().unwrap_or_default());
-                &made
-            }
-        };
-        let visible = boxes.visible(function);
-        return visible.into_iter().enumerate().map(|(cell, visible)| fate(boxes.has_data(cell), visible)).collect();
-    }
-    let (ranges, second) = (ranges(), second());
-    let of_cell = |index: usize| {
-        let range = Rectangle { s: ranges[index], g: second.as_ref().map_or([0.0; 2], |second| second[index]) };
-        let has_data = !range.s[0].is_nan() && !range.g[0].is_nan();
-        let visible = || match colors {
-            Some(colors) => {
-                let opaque = |&v: &u32| colors.get(v as usize).is_some_and(|color| color[3] > 0.0);
-                mesh.cells()[index].iter().any(opaque)
-            }
-            None => scene.classification.is_visible_over(&range),
-        };
-        fate(has_data, has_data && visible())
-    };
-    (0..ranges.len()).into_par_iter().map(of_cell).collect()
-}
-
-fn visible_cells(
-    scene: &Scene,
-    mesh: &TetMesh,
-    view: &View,
-    boxes: Option<&CellBoxes>,
-    colors: Option<&[[f64; 4]]>,
-) -> (Vec<u32>, Skips) {
-    let offset = mesh.origin() - view.eye;
-    let eye_space: Vec<DVec3> = mesh.points().par_iter().map(|p| view.rotate(p.as_dvec3() + offset)).collect();
-    let frustum = view.frustum();
-    let unseen = unseen(scene, mesh, boxes, colors);
-    let fates: Vec<Fate> = mesh
-        .cells()
-        .par_iter()
-        .enumerate()
-        .map(|(index, cell)| {
-            let p = cell.map(|v| eye_space[v as usize]);
-            // Of widgets without a second field there is nothing.
-            if let Some(fate) = unseen.get(index).copied().unwrap_or(Some(Fate::NoData)) {
-                fate
-            } else if frustum.iter().any(|&(n, c)| p.iter().all(|&q| n.dot(q) + c < 0.0)) {
-                Fate::Outside
-            } else if is_flat(mesh, cell) {
-                Fate::Flat
-            } else {
-                Fate::Drawn
-            }
-        })
-        .collect();
-    let count = |fate| fates.iter().filter(|&&f| f == fate).count();
-    let skips = Skips {
-        no_data: count(Fate::NoData),
-        transparent: count(Fate::Transparent),
-        flat: count(Fate::Flat),
-        outside: count(Fate::Outside),
-    };
-    let cells = (0..fates.len() as u32).filter(|&c| fates[c as usize] == Fate::Drawn).collect();
-    (cells, skips)
-}
-
-fn is_flat(mesh: &TetMesh, cell: &[u32; 4]) -> bool {
-    let p = cell.map(|v| mesh.points()[v as usize].as_dvec3());
-    (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) == 0.0
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
     use tetlux_mesh::procedural::{self, Split};
     use tetlux_mesh::{Component, Field};
     use tetlux_optics::Classification;
@@ -546,7 +470,7 @@ mod tests {
         // The view spans x from 3.75 to 5.25: the cubes 3 to 6 x in [3, 6] are seen, of which all have opacity.
         // Cubes 0 and 1 and the flat cell lie below scalar 2. In the last cube the far corner's six cells (each holds
         // the diagonal's end) have no data.
-        let expected = Skips { no_data: 6, transparent: 2 * 6 + 1, flat: 0, outside: 6 };
+        let expected = Skips { no_data: 6, transparent: 2 * 6 + 1, outside: 6, ..Skips::default() };
         assert_eq!(plan.skips, expected);
         assert_eq!(plan.cells, (3 * 6..6 * 6).collect::<Vec<u32>>());
         assert_eq!(plan.warnings.len(), 1, "missing data are warned of: {:?}", plan.warnings);

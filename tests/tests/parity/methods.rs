@@ -8,8 +8,8 @@ use tetlux_mesh::procedural::{Parts, Split, cuboid};
 use tetlux_mesh::{Field, TetMesh};
 use tetlux_render::{Frame, Model, Resources, table_specs};
 use tetlux_scene::{
-    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Plan, Scene, TablePrecision,
-    Target,
+    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Plan, Scene, SkipSet,
+    TablePrecision, Target,
 };
 use tetlux_tables::{Table, TableCache};
 use tetlux_tests::{
@@ -33,6 +33,7 @@ pub(crate) const GPU: Method = Method {
     target: Target::Rgba32f,
     pieces: None,
     max_error: 1e-3,
+    no_skip: SkipSet::NONE,
 };
 
 fn planned(mesh: &TetMesh, scene: &Scene, method: Method) -> Plan {

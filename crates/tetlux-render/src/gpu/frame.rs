@@ -5,6 +5,7 @@ use std::cell::Cell;
 use super::look;
 use super::picture::Picture;
 use super::pipelines::Pipelines;
+use super::resident::Resident;
 use super::spent::{Count, counters};
 use super::stretch::{scissor, stretches};
 use super::surfaces;
@@ -30,7 +31,7 @@ pub(crate) struct Batch {
 const LARGEST_BATCH: u32 = 1 << 18;
 
 /// Cells a batch: what one binding of projected cells, and one dispatch, can hold.
-fn batch_size(limits: &wgpu::Limits, geometry: &Geometry) -> u32 {
+pub(super) fn batch_size(limits: &wgpu::Limits, geometry: &Geometry) -> u32 {
     let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     let index_bytes = geometry.indices.map_or(0, size_of_val) as u64;
     let dispatch = limits.max_compute_workgroups_per_dimension.saturating_mul(WORKGROUP);
@@ -102,8 +103,9 @@ impl<'a> Maker<'a> {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    pub(super) fn scene(&self, binding: Binding, job: &Job) -> wgpu::Buffer {
+    pub(super) fn scene(&self, binding: Binding, job: &Job, resident: &Resident) -> wgpu::Buffer {
         let storage = wgpu::BufferUsages::STORAGE;
+        let kept = |part, label, contents| resident.buffer(self, job.mesh, part, label, contents);
         match binding {
             Binding::View => self.filled("view", bytemuck::bytes_of(&job.view), wgpu::BufferUsages::UNIFORM),
             Binding::Pieces => {
@@ -113,9 +115,9 @@ impl<'a> Maker<'a> {
                 let pieces: Vec<[[f32; 4]; 3]> = pieces.iter().map(|p| [p.low, p.high, p.s]).collect();
                 self.filled("pieces", bytemuck::cast_slice(&pieces), storage)
             }
-            Binding::Points => self.filled("points", bytemuck::cast_slice(&job.mesh.points), storage),
-            Binding::Cells => self.filled("cells", bytemuck::cast_slice(&job.mesh.cells), storage),
-            Binding::CellScalars => self.filled("cell scalars", bytemuck::cast_slice(&job.mesh.cell_scalars), storage),
+            Binding::Points => kept(0, "points", bytemuck::cast_slice(&job.mesh.points)),
+            Binding::Cells => kept(1, "cells", bytemuck::cast_slice(&job.mesh.cells)),
+            Binding::CellScalars => kept(2, "cell scalars", bytemuck::cast_slice(&job.mesh.cell_scalars)),
             Binding::Order => self.filled("order", bytemuck::cast_slice(job.order), storage),
             Binding::Seen => self.filled("points as seen", bytemuck::cast_slice(job.seen), storage),
             Binding::EntryPieces => self.filled("pieces of cells", bytemuck::cast_slice(job.entry_pieces), storage),
@@ -139,12 +141,12 @@ pub(super) fn draw(
     groups: Option<&Pipelines>,
     job: &Job,
 ) -> Result<Drawn, String> {
-    let Open { device, queue, .. } = open;
+    let Open { device, queue, resident, .. } = open;
     let cells = job.order.len() as u32;
     let pipeline_count = pipelines.count() + groups.map_or(0, Pipelines::count);
     let made = Resources { pipelines: pipeline_count, cells: job.order.len(), ..Resources::default() };
     let make = Maker::new(device, made);
-    let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b, make.scene(b, job))).collect();
+    let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b, make.scene(b, job, resident))).collect();
     let count = Count::new(&make, &scene);
     let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding as u32, buffer)).collect();
     let scene = make.bind(&pipelines.scene, &scene);

@@ -86,9 +86,9 @@ impl Marcher {
 
     /// Makes the picture; the error is what the driver said.
     pub(super) fn draw(&self, open: &Open, variant: &Variant, job: &Job, march: &March) -> Result<Drawn, String> {
-        let Open { device, queue, .. } = open;
+        let Open { device, queue, resident, .. } = open;
         let make = Maker::new(device, Resources { pipelines: 1, cells: job.order.len(), ..Resources::default() });
-        let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b, make.scene(b, job))).collect();
+        let scene: Vec<_> = variant.bindings().into_iter().map(|b| (b, make.scene(b, job, resident))).collect();
         let count = Count::new(&make, &scene);
         let scene: Vec<_> = scene.iter().map(|(binding, buffer)| (*binding as u32, buffer)).collect();
         let scene = make.bind(&self.scene, &scene);

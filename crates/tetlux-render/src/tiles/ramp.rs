@@ -21,6 +21,8 @@ pub(crate) struct Ramp {
     slope: [f32; 4],
     /// Ends of the piece.
     pub(crate) ends: [f32; 2],
+    /// Its luminance is constant: where in a segment the light comes from does not matter.
+    flat: bool,
 }
 
 /// Luminances are limited to this value, so that slopes stay finite.
@@ -30,11 +32,13 @@ const BRIGHTEST: f32 = 1e25;
 const BEYOND: [f32; 2] = [-1.0, 2.0];
 
 impl Ramp {
-    pub(crate) fn new(piece: &Piece) -> Ramp {
+    /// With `all_weights` no luminance is taken to be constant.
+    pub(crate) fn new(piece: &Piece, all_weights: bool) -> Ramp {
         let limited = |c: [f32; 4]| c.map(|x| x.min(BRIGHTEST));
         let (low, high) = (limited(piece.low), limited(piece.high));
         let slope = std::array::from_fn(|i| (high[i] - low[i]) * piece.s[2]);
-        Ramp { low, slope, ends: [piece.s[0].max(BEYOND[0]), piece.s[1].min(BEYOND[1])] }
+        let flat = !all_weights && low[..3] == high[..3];
+        Ramp { low, slope, ends: [piece.s[0].max(BEYOND[0]), piece.s[1].min(BEYOND[1])], flat }
     }
 
     /// Whether it is transparent throughout.
@@ -92,12 +96,11 @@ pub(crate) fn add_segment<S: Simd>(
         let root = horner(simd, EXP_THIN, x * -0.5);
         let square = x * x;
         let series = square.mul_add(TWO_SINH_HALF[2], TWO_SINH_HALF[1]).mul_add(square, TWO_SINH_HALF[0]);
-        let shift = match model {
-            Weights::Direct => {
-                let high = square.mul_add(SHIFT_8_2, horner(simd, SHIFT_8_1, e));
-                square.mul_add(high, e * horner(simd, SHIFT_8_0, e))
-            }
-            Weights::Average => S::f32s::splat(simd, 0.0),
+        let shift = if ramp.flat || model == Weights::Average {
+            S::f32s::splat(simd, 0.0)
+        } else {
+            let high = square.mul_add(SHIFT_8_2, horner(simd, SHIFT_8_1, e));
+            square.mul_add(high, e * horner(simd, SHIFT_8_0, e))
         };
         add(simd, ramp, root * x * series, root * shift * rise, middle, pixels);
     } else if model == Weights::Average {
@@ -146,9 +149,13 @@ fn add_medium<S: Simd>(
 ) {
     let root = horner(simd, EXP, x * -0.5);
     let square = x * x;
-    let high = square.mul_add(horner(simd, SHIFT_19_3, e), horner(simd, SHIFT_19_2, e));
-    let high = square.mul_add(high, horner(simd, SHIFT_19_1, e));
-    let shift = square.mul_add(high, e * horner(simd, SHIFT_19_0, e));
+    let shift = if ramp.flat {
+        S::f32s::splat(simd, 0.0)
+    } else {
+        let high = square.mul_add(horner(simd, SHIFT_19_3, e), horner(simd, SHIFT_19_2, e));
+        let high = square.mul_add(high, horner(simd, SHIFT_19_1, e));
+        square.mul_add(high, e * horner(simd, SHIFT_19_0, e))
+    };
     add(simd, ramp, root * x * horner(simd, TWO_SINH_HALF, square), root * shift * rise, middle, pixels);
 }
 

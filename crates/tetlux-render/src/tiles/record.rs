@@ -107,6 +107,8 @@ pub(crate) struct SetUp<'a> {
     pub(crate) points: &'a [Point],
     pub(crate) eye: &'a EyeSpace,
     pub(crate) pieces: &'a [Piece],
+    /// Every cell is taken to meet all of them.
+    pub(crate) cut_all: bool,
     pub(crate) size: [u32; 2],
 }
 
@@ -324,6 +326,10 @@ impl SetUp<'_> {
             None => (s[0].min(s[1]).min(s[2].min(s[3])), s[0].max(s[1]).max(s[2].max(s[3]))),
         };
         (record.base, record.range) = (least, most - least);
+        if self.cut_all {
+            record.pieces = [0, self.pieces.len() as u32 - 1];
+            return;
+        }
         let first = piece_at(self.pieces, least);
         // A piece that is only touched at its beginning is not entered.
         let mut last = first;

@@ -1,5 +1,7 @@
 //! Pictures by instruction set, group, size and error budget, and against the shaders' twin.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec2, Vec3};
 use tetlux_mesh::procedural::{Split, cuboid, three_cycle};
 use tetlux_mesh::{Component, Field, TetMesh};
@@ -7,7 +9,7 @@ use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_optics::transfer_f32::{Weights, integrate, piece_at, pieces};
 use tetlux_reference::{Caster, Ray};
-use tetlux_scene::{Camera, Method, Projection, Scene, TablePrecision, View};
+use tetlux_scene::{Camera, Method, Projection, Scene, SkipSet, TablePrecision, View};
 
 use super::*;
 use crate::cell::Kind;
@@ -15,7 +17,10 @@ use crate::device_mesh::{DeviceMesh, NEGATIVE};
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
 use crate::lens::Lens;
-use crate::{HIDDEN_ERROR, opaque};
+use crate::opaque;
+
+/// Share of the allowed error that may lie behind opaque pixels.
+const HIDDEN_ERROR: f64 = 1e-3;
 
 /// Single precision against double: positions, scalars and weights are each good to some 1e-6.
 const EXACT: f64 = 1e-5;
@@ -29,7 +34,7 @@ struct Drawing {
     transfer: TransferFunction,
     scene: Scene,
     view: View,
-    device: DeviceMesh,
+    device: Arc<DeviceMesh>,
 }
 
 impl Drawing {
@@ -53,7 +58,7 @@ impl Drawing {
             method,
         };
         let view = scene.camera.view(size).unwrap();
-        let device = DeviceMesh::new(&mesh, &scene.scalar);
+        let device = Arc::new(DeviceMesh::new(&mesh, &scene.scalar));
         Drawing { mesh, transfer, scene, view, device }
     }
 
@@ -76,7 +81,8 @@ impl Drawing {
             seen: &[],
             march: None,
             backdrop: None,
-            opaque: opaque(max_error, &self.pieces(), None, None),
+            opaque: opaque(HIDDEN_ERROR * max_error, &self.pieces(), None, None),
+            kept: SkipSet::default(),
             size: self.view.size,
         };
         draw_on(level, &job, &mut Stages::default()).0

@@ -48,6 +48,8 @@ pub(crate) struct Light<'a> {
     pub(crate) backdrop: Option<(&'a Backdrop, f32)>,
     /// Pixels across the picture.
     pub(crate) width: usize,
+    /// Segments are cut at all control points, whether their cells meet them or not.
+    pub(crate) cut_all: bool,
     /// What there is beyond one field's transfer function, and the further fields of the cells.
     pub(crate) look: Option<&'a Look>,
     pub(crate) further: &'a [Linear],
@@ -263,7 +265,11 @@ impl<'a, S: Simd> Walk<'a, S> {
     fn integrate(&self, record: &Record, segments: &Segments<S>, pixels: &mut Pixels<S>) {
         let Segments { front, back, length, .. } = *segments;
         let ramps = &self.light.ramps[record.pieces[0] as usize..=record.pieces[1] as usize];
-        let ramp = if ramps.len() == 1 { ramps.first() } else { only::<S>(ramps, record.base, front, back, length) };
+        let ramp = match ramps {
+            _ if self.light.cut_all => None,
+            [ramp] => Some(ramp),
+            ramps => only::<S>(ramps, record.base, front, back, length),
+        };
         if let Some(ramp) = ramp {
             if !ramp.is_empty() {
                 let shift = record.base - ramp.ends[0];

@@ -29,7 +29,7 @@ fn segment<S: Simd>(simd: S, ramps: &[Ramp], model: Weights, [front, back, lengt
 
 /// Luminance 1 at scalar 0 and 0 at 1 in red, the reverse in green; extinctions at the ends.
 fn ramp(low: f32, high: f32) -> Ramp {
-    Ramp::new(&Piece { low: [1.0, 0.0, 1.0, low], high: [0.0, 1.0, 1.0, high], s: [0.0, 1.0, 1.0, 0.0] })
+    Ramp::new(&Piece { low: [1.0, 0.0, 1.0, low], high: [0.0, 1.0, 1.0, high], s: [0.0, 1.0, 1.0, 0.0] }, false)
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn cut_segments_are_those_of_the_twin() {
         opacity.map(|(s, opacity)| OpacityNode { s, opacity }).to_vec(),
     );
     let pieces = pieces(&transfer.unwrap(), [-1.5, 3.5], 1.0);
-    let ramps: Vec<Ramp> = pieces.iter().map(Ramp::new).collect();
+    let ramps: Vec<Ramp> = pieces.iter().map(|piece| Ramp::new(piece, false)).collect();
     // Every tenth, and the steps' own places.
     let places: Vec<f32> = (0..=20).map(|i| i as f32 * 0.05).chain(pieces[1..].iter().map(|p| p.s[0])).collect();
     let mut met = 0;

@@ -1,0 +1,30 @@
+//! Bytes that a picture does without.
+
+use tetlux_mesh::{Location, TetMesh};
+use tetlux_scene::{Backend, Fate, Plan, Scene, Skip, SkipLine};
+use tetlux_tables::TableSpec;
+
+use crate::gpu::variant::Variant;
+use crate::tiles::CELL_BYTES;
+
+/// Bytes of memory, of the device's where the graphics back end draws, that a line of the plan saves.
+pub fn bytes_saved(scene: &Scene, mesh: &TetMesh, plan: &Plan, line: &SkipLine) -> u64 {
+    if !matches!(line.fate, Fate::Skipped | Fate::Later) {
+        return 0;
+    }
+    let gpu = plan.backend == Backend::Gpu;
+    let on_cells = scene.scalar.location == Location::Cell;
+    let of_mesh = |points: u64, cells: u64| points * mesh.points().len() as u64 + cells * mesh.cells().len() as u64;
+    // Projected and listed in the order.
+    let cell = if gpu { Variant::new(plan, on_cells, None, false).geometry().bytes + 4 } else { CELL_BYTES + 4 };
+    match line.skip {
+        Skip::Transparent | Skip::Faint | Skip::Outside => line.cells as u64 * cell,
+        Skip::Order => of_mesh(0, 4),
+        // Three coordinates in double precision.
+        Skip::Gradients => of_mesh(24, 0),
+        // The default table.
+        Skip::Tables => 4 * TableSpec::default_q().size.map(u64::from).iter().product::<u64>(),
+        Skip::Uploads => of_mesh(16, if on_cells { 20 } else { 16 }),
+        _ => 0,
+    }
+}
