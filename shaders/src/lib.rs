@@ -29,13 +29,14 @@ macro_rules! modules {
 pub const MODULES: &[(&str, &str)] = modules! {
     lib {
         balanced cell erf flat further gradients image integrated light lit_linear look lookup mesh mesh_buffers plane
-        published ray segment silhouette span spent symmetric thick transfer triangle two_fields view volume walk whole
-        widget widget_tables widgets
+        prepared published radix ray ready scanned segment silhouette span spent symmetric thick tiles tiling transfer
+        triangle two_fields view volume walk whole widget widget_tables widgets
     }
     attributes { classified given }
     data { cell point }
     function { analytic approximate image two_fields widgets }
     geometry { balanced ray thick vicp }
+    grouping { none sorted }
     lit { one_field turns two_fields }
     interpolation { perspective screen_linear }
     output { dither plain straight }
@@ -46,7 +47,7 @@ pub const MODULES: &[(&str, &str)] = modules! {
     source { computed stored }
     surface { none opaque }
     weights { average direct linear psi q symmetric }
-    stages { balance decompose draw group march project }
+    stages { add balance bounds count decompose depths draw fill group histogram march project scan scatter tiles }
 };
 
 /// An axis and the module that stands for it.
@@ -58,6 +59,7 @@ pub const DEFAULTS: &[Choice] = &[
     ("data", "data::point"),
     ("function", "function::widgets"),
     ("geometry", "geometry::ray"),
+    ("grouping", "grouping::none"),
     ("interpolation", "interpolation::perspective"),
     ("lit", "lit::turns"),
     ("output", "output::plain"),

@@ -44,6 +44,8 @@ pub enum Way {
     GpuVicp,
     /// wgpu, every pixel from cell to cell.
     GpuMarch,
+    /// wgpu, tiles of the picture in exact order.
+    GpuTiles,
     /// The processor, cells by centroid.
     CpuCentroid,
     /// wgpu, in exact order.
@@ -56,11 +58,12 @@ pub enum Way {
 
 impl Way {
     /// Every way there is.
-    pub const ALL: [Way; 8] = [
+    pub const ALL: [Way; 9] = [
         Way::GpuNone,
         Way::GpuCentroid,
         Way::GpuVicp,
         Way::GpuMarch,
+        Way::GpuTiles,
         Way::GpuExact,
         Way::CpuCentroid,
         Way::CpuExact,
@@ -71,6 +74,7 @@ impl Way {
         let projection = match self {
             Way::GpuVicp => CellProjection::Vicp,
             Way::GpuMarch => CellProjection::March,
+            Way::GpuTiles => CellProjection::Tiles,
             _ => CellProjection::Auto,
         };
         let (backend, order) = match self {
@@ -78,7 +82,7 @@ impl Way {
             Way::GpuCentroid | Way::GpuVicp => (Backend::Gpu, Order::Centroid),
             Way::GpuMarch => (Backend::Gpu, Order::None),
             Way::CpuCentroid => (Backend::Cpu, Order::Centroid),
-            Way::GpuExact => (Backend::Gpu, Order::Exact),
+            Way::GpuExact | Way::GpuTiles => (Backend::Gpu, Order::Exact),
             Way::CpuExact => (Backend::Cpu, Order::Exact),
             Way::CpuPixel => (Backend::Cpu, Order::Pixel),
         };

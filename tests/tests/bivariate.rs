@@ -455,6 +455,7 @@ fn other_ways_are_refused_with_the_remedy() {
     };
     for (method, named) in [
         (Method { projection: CellProjection::Gator, ..GPU }, ["\"gator\"", "use pt, vicp or march"]),
+        (Method { projection: CellProjection::Tiles, ..GPU }, ["\"tiles\"", "use pt, vicp or march"]),
         (Method { projection: CellProjection::Balanced, ..GPU }, ["\"balanced\"", "use pt, vicp or march"]),
         (Method { interpolation: Interpolation::Perspective, ..GPU }, ["\"perspective\"", "use ray"]),
         (Method { classification: tetlux_scene::Classification::Vertex, ..GPU }, ["\"vertex\"", "use post-exact"]),

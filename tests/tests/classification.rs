@@ -216,7 +216,14 @@ fn both_back_ends_draw_two_fields_and_light_and_the_plan_says_what_gradients_are
     assert!(widgets.contains("cpu: ") && widgets.contains("magnitude is the second scalar"), "{widgets}");
     let lit = says(&format!("[transfer]\n{NODES}[light]\n"));
     assert!(lit.contains("for normals"), "{lit}");
-    let hardware = tetlux_scene::Device { name: "adapter".into(), software: false, blends_f32: true, norm16: false };
+    let hardware = tetlux_scene::Device {
+        name: "adapter".into(),
+        driver: "1.2".into(),
+        software: false,
+        blends_f32: true,
+        norm16: false,
+        costs: None,
+    };
     for text in [format!("[transfer]\n{GAUSSIAN}"), format!("[transfer]\n{NODES}[light]\n")] {
         let plan = Plan::new(&scene(&text), &mesh, Some(&hardware)).unwrap();
         assert_eq!(plan.backend, tetlux_scene::Backend::Gpu, "{plan}");

@@ -277,6 +277,7 @@ fn both_back_ends_and_every_projection_make_the_reference_s_picture() {
         ("pt, symmetric", Method { integrator: Integrator::Symmetric, ..gpu }),
         ("vicp", by(CellProjection::Vicp, Interpolation::Auto)),
         ("march", by(CellProjection::March, Interpolation::Auto)),
+        ("tiles", by(CellProjection::Tiles, Interpolation::Auto)),
     ];
     // Over triangles, whose vertices rasterisers round.
     let rounded = [

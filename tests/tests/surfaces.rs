@@ -177,6 +177,7 @@ fn exact_methods() -> Vec<Method> {
         Method { projection: CellProjection::Pt, ..gpu },
         Method { projection: CellProjection::Vicp, ..gpu },
         Method { projection: CellProjection::March, order: Order::None, ..gpu },
+        Method { projection: CellProjection::Tiles, ..gpu },
     ]
 }
 

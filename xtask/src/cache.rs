@@ -5,6 +5,8 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 use tetlux_ingest::{Cache, CacheEntry};
 
+use crate::calibration;
+
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   cargo xtask cache
@@ -12,11 +14,12 @@ Examples:
   TETLUX_CACHE_DIR=/scratch/tetlux cargo xtask render mesh.vtu
 
 Meshes of 100 000 tetrahedra and more are kept in the user's cache folder, or in that which the environment variable
-TETLUX_CACHE_DIR names, 8 GiB at most; the least recently used go first.";
+TETLUX_CACHE_DIR names, 8 GiB at most; the least recently used go first. Beside them, in adapter-costs.json, is kept what
+graphics adapters were measured to take.";
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Remove all of them
+    /// Remove all of them, and what graphics adapters were measured to take
     #[arg(long)]
     clear: bool,
 }
@@ -28,6 +31,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let folder = cache.folder.display();
     if args.clear {
         let (meshes, bytes) = cache.clear().with_context(|| format!("{folder}: cannot be cleared"))?;
+        calibration::forget(&cache.folder).with_context(|| format!("{folder}: cannot be cleared"))?;
         say!("{folder}: {meshes} meshes removed, {}", size(bytes));
         return Ok(());
     }

@@ -7,7 +7,7 @@ use tetlux_render::{Frame, Renderer, Stage, bytes_saved};
 use tetlux_scene::{Fate, Plan, Planner, Scene, Skip, SkipLine};
 
 use crate::input::Input;
-use crate::{progress, tables};
+use crate::{calibration, progress, tables};
 
 /// A line of the plan, and what it saves.
 #[derive(Serialize)]
@@ -102,10 +102,11 @@ fn is_kept_for_later(saving: &Saving) -> bool {
 /// Processor seconds of the first picture and of the next, by all that is new; and the picture.
 fn twice(input: &Input, scene: &Scene) -> Result<([f64; 2], Image)> {
     let (renderer, planner) = (Renderer::new(), Planner::new(&input.mesh));
+    let device = calibration::device(input, &renderer)?;
     let mut model = None;
     let mut picture = || -> Result<(f64, Image)> {
         let mut stages = tetlux_render::Stages::default();
-        let plan = stages.run("plan", || planner.plan(scene, renderer.device()))?;
+        let plan = stages.run("plan", || planner.plan(scene, device.as_ref()))?;
         let tables = stages.run("tables", || tables::load(input, &plan))?;
         let model = model.get_or_insert_with(|| input.model(&plan));
         let frame = renderer.render_with(scene, model, &plan, &tables)?;

@@ -67,7 +67,7 @@ pub(crate) struct SceneArgs {
     /// auto, none, centroid, power, mpvo, mpvonc, exact or pixel
     #[arg(long, value_name = "NAME")]
     pub(crate) order: Option<Order>,
-    /// How cells become fragments: auto, pt, gator, vicp, balanced or march
+    /// How cells become fragments: auto, pt, gator, vicp, balanced, march or tiles
     #[arg(long, value_name = "NAME")]
     pub(crate) projection: Option<CellProjection>,
     /// How fragments come by their segments: auto, ray, perspective or screen-linear

@@ -6,6 +6,7 @@ mod output;
 mod bench;
 mod build_tables;
 mod cache;
+mod calibration;
 mod compare;
 mod explain;
 mod histogram;

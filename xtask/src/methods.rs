@@ -53,6 +53,7 @@ const ROWS: &[Row] = &[
     ("`vicp`", |m| m.projection = CellProjection::Vicp),
     ("`balanced`", |m| m.projection = CellProjection::Balanced),
     ("`march`", |m| m.projection = CellProjection::March),
+    ("`tiles`", |m| m.projection = CellProjection::Tiles),
     ("`perspective`", |m| m.interpolation = Interpolation::Perspective),
     ("`screen-linear`", |m| m.interpolation = Interpolation::ScreenLinear),
     ("`symmetric`", |m| m.integrator = Integrator::Symmetric),

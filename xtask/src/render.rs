@@ -10,7 +10,7 @@ use tetlux_scene::{Backend, Plan};
 use crate::input::{Input, SceneArgs};
 use crate::report::{Report, create_folder};
 use crate::sequence::{self, SequenceArgs};
-use crate::{explain, progress, tables};
+use crate::{calibration, explain, progress, tables};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -18,6 +18,7 @@ Examples:
   cargo xtask render mesh.vtu --field pressure
   cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfin_tets.vtu
   cargo xtask render scenes/bluntfin-smooth.toml --mesh bluntfinxyz.bin --solution bluntfinq.bin --field Density
+  cargo xtask render --backend gpu --projection tiles --size 1600x900
   cargo xtask render scenes/wing-silhouette.toml --projection march
   cargo xtask render mesh.vtu --field pressure --surface body.stl
   cargo xtask render scenes/wing-gaussian.toml --integrator approximate --pieces 20
@@ -87,7 +88,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 /// Plans and renders; `announce` is told the plan before anything is drawn.
 pub(crate) fn render(input: &Input, renderer: &Renderer, announce: impl FnOnce(&Plan)) -> Result<(Plan, Frame)> {
     let mut stages = Stages::default();
-    let mut plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, renderer.device()))?;
+    let device = calibration::device(input, renderer)?;
+    let mut plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, device.as_ref()))?;
     let tables = stages.run("tables", || tables::load(input, &plan));
     let tables = tables::or_directly(tables, input.integrator_forced, &mut plan)?;
     announce(&plan);

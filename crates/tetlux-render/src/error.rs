@@ -66,6 +66,9 @@ pub enum RenderError {
         /// The name in its specification.
         id: String,
     },
+    /// The pictures that an adapter is measured by could not be set up.
+    #[error("the pictures that an adapter is measured by: {0}")]
+    Sample(String),
     /// A shader could not be put together.
     #[error(transparent)]
     Shader(#[from] ComposeError),

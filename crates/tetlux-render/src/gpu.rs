@@ -1,23 +1,28 @@
-//! The wgpu back end: cells projected in a compute stage, drawn back to front, blended by the fixed-function hardware.
+//! The wgpu back end: cells projected in a compute stage, drawn back to front, blended by the fixed-function hardware;
+//! or binned into tiles and composited in registers; or none of it, every pixel walking from cell to cell.
 
+mod compute;
 pub(crate) mod frame;
 pub(crate) mod look;
 pub(crate) mod march;
 mod picture;
 pub(crate) mod pipelines;
+pub(crate) mod radix;
 mod resident;
+pub(crate) mod scan;
 #[cfg(test)]
 mod size_tests;
 mod spent;
 mod stretch;
 mod surfaces;
 pub(crate) mod tables;
+pub(crate) mod tiles;
 pub(crate) mod variant;
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use tetlux_scene::{Device, Plan, Skip};
+use tetlux_scene::{CellProjection, Classification, Device, Order, Plan, Skip};
 
 use crate::look::Spent;
 use crate::march::March;
@@ -26,8 +31,10 @@ use crate::{Job, RenderError, Resources};
 use look::LookVariant;
 use march::Marcher;
 use pipelines::Pipelines;
+use radix::Radix;
 use resident::Resident;
 pub(crate) use stretch::LARGEST_GROUP;
+use tiles::{Room, Tiler};
 use variant::Variant;
 
 /// A graphics adapter, and its device and pipelines once they have been used.
@@ -35,13 +42,15 @@ use variant::Variant;
 pub(crate) struct Gpu {
     adapter: wgpu::Adapter,
     device: Device,
-    driver: String,
     /// What is asked of the adapter, of what it has.
     features: wgpu::Features,
     limits: wgpu::Limits,
     open: Mutex<Option<Arc<Open>>>,
     pipelines: Made<Pipelines>,
     marchers: Made<Marcher>,
+    tilers: Made<Tiler>,
+    /// How much tiles do at a time at most.
+    room: Room,
 }
 
 /// What has been made for each variant of the shaders.
@@ -54,6 +63,8 @@ struct Open {
     /// Why the device is gone, once it is.
     lost: Arc<OnceLock<String>>,
     resident: Resident,
+    /// The pipelines of sorts, once there was one.
+    radix: OnceLock<Radix>,
 }
 
 /// What a picture came to.
@@ -96,18 +107,48 @@ impl Gpu {
             software: info.device_type == wgpu::DeviceType::Cpu,
             blends_f32: features.contains(wgpu::Features::FLOAT32_BLENDABLE),
             norm16: features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM),
+            driver: format!("{} {}", info.driver, info.driver_info),
+            costs: None,
         };
-        let driver = format!("{} {}", info.driver, info.driver_info);
-        let (open, pipelines, marchers) = (Mutex::default(), Mutex::default(), Mutex::default());
-        Gpu { adapter, device, driver, features, limits, open, pipelines, marchers }
+        Gpu {
+            adapter,
+            device,
+            features,
+            limits,
+            open: Mutex::default(),
+            pipelines: Mutex::default(),
+            marchers: Mutex::default(),
+            tilers: Mutex::default(),
+            room: Room::MOST,
+        }
     }
 
     pub(crate) fn device(&self) -> &Device {
         &self.device
     }
 
-    pub(crate) fn driver(&self) -> &str {
-        &self.driver
+    /// Whether it sorts a plan's cells itself, so that their order stays on the device: by centroid, for tiles. What runs on
+    /// the processor too is slower at it than the processor itself.
+    pub(crate) fn sorts(&self, plan: &Plan) -> bool {
+        plan.projection == CellProjection::Tiles
+            && plan.order == Order::Centroid
+            && plan.classification != Classification::PostClip
+            && !self.device.software
+    }
+
+    /// The stable order of some keys.
+    pub(crate) fn sort(&self, keys: &[u32]) -> Result<Vec<u32>, RenderError> {
+        let stages = &mut Stages::default();
+        let open = &*self.opened(stages)?;
+        let limits = open.device.limits();
+        let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let most = u64::from(Radix::most(&limits)).min(bytes / 4);
+        if keys.len() as u64 > most {
+            let (what, needed, unit, adapter) = ("the sort", keys.len() as u64, "keys", self.device.name.clone());
+            return Err(RenderError::Limit { what, needed, unit, limit: most, adapter });
+        }
+        let radix = self.radix(open, stages)?;
+        self.checked(open, || radix.order(open, keys, u32::BITS))?.map_err(|e| self.failed(open, e))
     }
 
     /// Draws a picture.
@@ -115,6 +156,8 @@ impl Gpu {
         let open = &*self.opened(stages)?;
         let look = job.look.as_ref().map(LookVariant::new);
         let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty(), look, job.backdrop.is_some());
+        let all = job.kept.contains(Skip::Pipelines) && job.entry_pieces.is_empty();
+        let sorted = all || stretch::sorted(job.groups).next().is_some();
         self.check_limits(open, &variant, job)?;
         let pipelines = |variant, stages: &mut Stages| {
             made(&self.pipelines, variant, stages, || self.checked(open, || Pipelines::new(&open.device, variant)))
@@ -123,10 +166,20 @@ impl Gpu {
             let make = || self.checked(open, || Marcher::new(&open.device, variant));
             let marcher = made(&self.marchers, variant, stages, make)?;
             stages.run("draw", || self.checked(open, || marcher.draw(open, &variant, job, march)))?
+        } else if variant.projection == CellProjection::Tiles {
+            let variant = if sorted { variant.of_groups() } else { variant };
+            let make = || self.checked(open, || Tiler::new(&open.device, variant));
+            let tiler = made(&self.tilers, variant, stages, make)?;
+            let radix = self.radix(open, stages)?;
+            let room = Room::of(&open.device.limits(), &variant, job.size).within(self.room);
+            let by_centroid = self.sorts(plan);
+            let draw = || tiler.draw(open, radix, &variant, job, by_centroid, room, &self.device.name);
+            return stages.run("draw", || self.checked(open, draw))?.map_err(|error| match error {
+                RenderError::Device { reason, .. } => self.failed(open, reason),
+                error => error,
+            });
         } else {
             let cells = pipelines(variant, stages)?;
-            let all = job.kept.contains(Skip::Pipelines) && job.entry_pieces.is_empty();
-            let sorted = all || job.groups.iter().any(|group| group.end - group.start <= LARGEST_GROUP);
             let groups = if sorted { Some(pipelines(variant.of_groups(), stages)?) } else { None };
             let draw = || frame::draw(open, &variant, &cells, groups.as_deref(), job);
             stages.run("draw", || self.checked(open, draw))?
@@ -143,9 +196,19 @@ impl Gpu {
         // What was made on a device that is lost is lost with it.
         self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).clear();
         self.marchers.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        self.tilers.lock().unwrap_or_else(PoisonError::into_inner).clear();
         let open = Arc::new(stages.run("open device", || self.open())?);
         *known = Some(open.clone());
         Ok(open)
+    }
+
+    /// The pipelines of sorts, made once.
+    fn radix<'a>(&self, open: &'a Open, stages: &mut Stages) -> Result<&'a Radix, RenderError> {
+        if let Some(radix) = open.radix.get() {
+            return Ok(radix);
+        }
+        let radix = stages.run("pipelines", || self.checked(open, || Radix::new(&open.device)))??;
+        Ok(open.radix.get_or_init(|| radix))
     }
 
     fn open(&self) -> Result<Open, RenderError> {
@@ -163,7 +226,7 @@ impl Gpu {
             // The first reason counts.
             let _ = told.set(format!("{reason:?}: {message}").trim_end_matches([':', ' ']).to_string());
         });
-        Ok(Open { device, queue, lost, resident: Resident::default() })
+        Ok(Open { device, queue, lost, resident: Resident::default(), radix: OnceLock::new() })
     }
 
     /// Runs work on the device and turns what the driver reports into an error.
@@ -202,8 +265,12 @@ impl Gpu {
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let side = u64::from(limits.max_texture_dimension_2d);
         let pixels = u64::from(job.size[0]) * u64::from(job.size[1]);
-        // Projected cells too or, of a march, its three lists.
-        let own = if job.march.is_some() { 3 } else { 1 };
+        // Projected cells too or, of a march or of tiles, their lists.
+        let own = match variant.projection {
+            CellProjection::March => 3,
+            CellProjection::Tiles => 4,
+            _ => 1,
+        };
         let buffers = own + variant.bindings().into_iter().filter(|binding| binding.is_storage()).count();
         let stage = u64::from(limits.max_storage_buffers_per_shader_stage);
         for (what, needed, unit, limit) in [

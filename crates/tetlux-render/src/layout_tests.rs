@@ -9,8 +9,11 @@ use crate::device_view::DeviceView;
 use crate::gpu::frame::Batch;
 use crate::gpu::look::LookUniform;
 use crate::gpu::march::Limits;
+use crate::gpu::radix::Digit;
+use crate::gpu::scan::Scanned;
 use crate::gpu::tables::Lookup;
-use crate::gpu::variant::{BALANCED_BYTES, CELL_BYTES};
+use crate::gpu::tiles::{Sorted, Tiling};
+use crate::gpu::variant::{BALANCED_BYTES, CELL_BYTES, READY_BYTES};
 use crate::seen::Seen;
 
 /// (member, offset) of a structure of the drawing stage, and its size.
@@ -121,6 +124,41 @@ fn the_limits_of_a_march() {
         ("unused", offset_of!(Limits, unused)),
     ]);
     assert_eq!(layout_in("stages::march", "March"), (ours, size_of::<Limits>()));
+}
+
+#[test]
+fn what_is_scanned_and_a_digit() {
+    let ours = named([
+        ("count", offset_of!(Scanned, count)),
+        ("unused", offset_of!(Scanned, unused)),
+        ("unused_pair", offset_of!(Scanned, unused_pair)),
+    ]);
+    assert_eq!(layout_in("stages::scan", "Scanned"), (ours, size_of::<Scanned>()));
+    let ours = named([
+        ("count", offset_of!(Digit, count)),
+        ("blocks", offset_of!(Digit, blocks)),
+        ("shift", offset_of!(Digit, shift)),
+        ("bits", offset_of!(Digit, bits)),
+    ]);
+    assert_eq!(layout_in("stages::scatter", "Digit"), (ours, size_of::<Digit>()));
+}
+
+#[test]
+fn a_run_of_cells_on_tiles() {
+    assert_eq!(layout_in("stages::tiles", "Ready").1 as u64, READY_BYTES);
+    let ours = named([
+        ("columns", offset_of!(Tiling, columns)),
+        ("first", offset_of!(Tiling, first)),
+        ("end", offset_of!(Tiling, end)),
+        ("opaque", offset_of!(Tiling, opaque)),
+    ]);
+    assert_eq!(layout_in("stages::tiles", "Tiling"), (ours, size_of::<Tiling>()));
+    let ours = named([
+        ("pairs", offset_of!(Sorted, pairs)),
+        ("tiles", offset_of!(Sorted, tiles)),
+        ("unused", offset_of!(Sorted, unused)),
+    ]);
+    assert_eq!(layout_in("stages::bounds", "Sorted"), (ours, size_of::<Sorted>()));
 }
 
 /// What is seen of the four vertices and their scalars, which are pulled; the face opposite goes without saying.

@@ -36,6 +36,7 @@
 mod adaptive;
 mod attributes;
 mod backdrop;
+mod calibration;
 #[cfg(test)]
 mod cell;
 mod device_mesh;
@@ -187,9 +188,19 @@ impl Renderer {
         self.gpu.as_ref().map(gpu::Gpu::device)
     }
 
+    /// The stable order of some keys, found on the adapter by the radix sort that tiles are binned by: where in `keys` the
+    /// least is, and so on.
+    ///
+    /// # Errors
+    ///
+    /// No adapter, more keys than it can hold, or a driver that fails.
+    pub fn sort(&self, keys: &[u32]) -> Result<Vec<u32>, RenderError> {
+        self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.sort(keys)
+    }
+
     /// The adapter's driver and its version, as they name themselves.
     pub fn driver(&self) -> Option<&str> {
-        self.gpu.as_ref().map(gpu::Gpu::driver)
+        self.device().map(|device| device.driver.as_str())
     }
 
     /// Renders a scene on a mesh as its plan says: by a method without tables.
@@ -221,7 +232,8 @@ impl Renderer {
         let tables = table_specs(scene, model.mesh(), plan).iter().map(find).collect::<Result<Vec<_>, _>>()?;
         let mut stages = Stages::default();
         let (mesh, view) = (model.mesh(), &plan.view);
-        let mut order = order::order(&self.orderer, model, plan, &mut stages);
+        let on_device = plan.backend == Backend::Gpu && self.gpu.as_ref().is_some_and(|gpu| gpu.sorts(plan));
+        let mut order = order::order(&self.orderer, model, plan, on_device, &mut stages);
         let (device_mesh, mesh_reused) =
             stages.run("prepare", || model.prepared(&scene.scalar, plan.may_skip(Skip::Uploads)));
         if plan.kept.contains(Skip::Gradients) {

@@ -8,10 +8,20 @@ use tetlux_scene::{Backend, Order as Asked, Plan, Skip, View};
 use crate::gpu::LARGEST_GROUP;
 use crate::{Model, Stages};
 
-/// The cells that the plan keeps, nearest first.
-pub(crate) fn order(orderer: &Mutex<Orderer>, model: &Model, plan: &Plan, stages: &mut Stages) -> Order {
+/// The cells that the plan keeps, nearest first; as they come if the device sorts them.
+pub(crate) fn order(
+    orderer: &Mutex<Orderer>,
+    model: &Model,
+    plan: &Plan,
+    on_device: bool,
+    stages: &mut Stages,
+) -> Order {
     let method = match plan.order {
         Asked::None => return Order { cells: plan.cells.clone(), ..Order::default() },
+        Asked::Centroid if on_device => {
+            let report = tetlux_order::OrderReport { method: Method::Centroid, ..Default::default() };
+            return Order { cells: plan.cells.clone(), report, ..Order::default() };
+        }
         Asked::Centroid | Asked::Pixel => {
             // Of the cells that are drawn alone: no other cell decides their places.
             let eye = sampling(&plan.view).eye();

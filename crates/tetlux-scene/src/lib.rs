@@ -20,6 +20,7 @@
 
 mod budget;
 mod camera;
+mod cost;
 mod culling;
 mod document;
 mod emphasis;
@@ -40,6 +41,7 @@ mod view;
 
 pub use budget::{COLOR_SHARE, COLOR_SHARE_LIT, LIGHT_SHARE, Stated, Term};
 pub use camera::{Camera, Projection};
+pub use cost::{Cost, Costs, Work};
 pub use culling::CellBoxes;
 pub use emphasis::Emphasized;
 pub use error::SceneError;

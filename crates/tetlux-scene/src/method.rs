@@ -94,6 +94,9 @@ named! {
         /// Every pixel walks along its ray from cell to cell; needs no order and no blending: Garrity 1990; Weiler, Kraus,
         /// Merz and Ertl 2003.
         March,
+        /// Cells binned into tiles of the picture in their order, every tile composited front to back in registers: no
+        /// blending.
+        Tiles,
     }
 }
 
@@ -283,6 +286,11 @@ impl Method {
         {
             return Some(reason);
         }
+        if self.projection == CellProjection::Tiles
+            && let Some(reason) = self.refusal_of_tiles()
+        {
+            return Some(reason);
+        }
         if self.projection == CellProjection::Balanced
             && let Some(reason) = self.refusal_of_balanced()
         {
@@ -396,6 +404,29 @@ impl Method {
         None
     }
 
+    fn refusal_of_tiles(&self) -> Option<String> {
+        if !matches!(self.interpolation, Interpolation::Auto | Interpolation::Ray) {
+            return Some(format!(
+                "projection \"tiles\" finds each segment on the ray and draws no triangles: leave out --interpolation {}",
+                self.interpolation
+            ));
+        }
+        if !matches!(self.target, Target::Auto | Target::Rgba32f) {
+            return Some(format!(
+                "projection \"tiles\" composites in single precision and blends into nothing: leave out --target {}",
+                self.target
+            ));
+        }
+        if self.integrator == Integrator::PreintQ {
+            return Some(
+                "projection \"tiles\" looks up one table in a workgroup, for there are drivers that fail with two (Mesa 22.3 in \
+                 software), and integrator \"preint-q\" has two: use preint, preint-log or --projection pt"
+                    .into(),
+            );
+        }
+        None
+    }
+
     fn refusal_of_balanced(&self) -> Option<String> {
         if self.interpolation != Interpolation::Auto {
             return Some(format!(
@@ -488,6 +519,24 @@ mod tests {
         ] {
             let refusal = method.refusal().unwrap();
             assert!(refusal.contains("march") && refusal.contains(named), "{refusal}");
+        }
+    }
+
+    #[test]
+    fn tiles_are_refused_what_they_do_not_do() {
+        let tiles = Method { projection: CellProjection::Tiles, ..Method::default() };
+        assert_eq!(tiles.refusal(), None);
+        let alike = (Order::Exact, Interpolation::Ray, Target::Rgba32f);
+        assert_eq!(Method { order: alike.0, interpolation: alike.1, target: alike.2, ..tiles }.refusal(), None);
+        for (method, named) in [
+            (Method { order: Order::Pixel, ..tiles }, "pixel"),
+            (Method { target: Target::Rgba8, ..tiles }, "--target rgba8"),
+            (Method { interpolation: Interpolation::Perspective, ..tiles }, "--interpolation perspective"),
+            (Method { backend: Backend::Cpu, ..tiles }, "--backend gpu"),
+            (Method { integrator: Integrator::PreintQ, ..tiles }, "preint-q"),
+        ] {
+            let refusal = method.refusal().unwrap();
+            assert!(refusal.contains("tiles") && refusal.contains(named), "{refusal}");
         }
     }
 

@@ -15,21 +15,25 @@ use crate::look;
 use crate::one_peak::beyond_published;
 use crate::reason::{of_classification, of_interpolation, of_projection, of_table_precision, of_target};
 use crate::{
-    Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Planner, Scene, SceneError,
-    Skip, SkipLine, SkipSet, Skips, Stated, TablePrecision, Target, View,
+    Backend, CellProjection, Classification, Costs, Integrator, Interpolation, Method, Order, Planner, Scene,
+    SceneError, Skip, SkipLine, SkipSet, Skips, Stated, TablePrecision, Target, View, Work,
 };
 
 /// What a plan needs to know of a graphics adapter.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Device {
     /// The adapter's name.
     pub name: String,
+    /// Its driver's name and version.
+    pub driver: String,
     /// It runs on the processor.
     pub software: bool,
     /// It blends into 32-bit floating-point targets.
     pub blends_f32: bool,
     /// It has textures of 16-bit normalised integers.
     pub norm16: bool,
+    /// What the ways of drawing cost there, where that has been measured.
+    pub costs: Option<Costs>,
 }
 
 /// The decisions for one picture of one mesh.
@@ -106,7 +110,8 @@ impl Plan {
         let (first, second) = planner.ranges(scene);
         let measures = planner.measures(scene, &first);
         let spent = spend(scene, &measures, backend);
-        let projection = choose_projection(&method, backend, device);
+        let work = (!look::is_asked(scene)).then(|| Work::new(planner.mesh(), &view));
+        let (projection, projection_reason) = choose_projection(&method, backend, device, work.as_ref());
         let (order, order_reason) = choose_order(scene, integrator, projection, spent.order);
         let (target, target_reason) = choose_target(method.target, projection, device);
         let (table_precision, fallback) = choose_table_precision(method.table_precision, device);
@@ -134,7 +139,8 @@ impl Plan {
         let mut reasons =
             vec![("backend", format!("{backend}: {backend_reason}")), ("order", format!("{order}: {order_reason}"))];
         if backend == Backend::Gpu {
-            reasons.push(("projection", says(decided.projection, of_projection)));
+            let why = projection_reason.map_or(String::new(), |reason| format!("; {reason}"));
+            reasons.push(("projection", says(decided.projection, of_projection) + &why));
             if !matches!(projection, CellProjection::Balanced | CellProjection::March) {
                 reasons.push(("interpolation", says(decided.interpolation, of_interpolation)));
             }
@@ -198,6 +204,24 @@ impl Plan {
     /// Whether something may be left undone: it is not asked to be done all the same.
     pub fn may_skip(&self, skip: Skip) -> bool {
         !self.kept.contains(skip)
+    }
+}
+
+impl Plan {
+    /// Whether a plan would follow what the device's ways of drawing cost ([`Device::costs`]), if that were known: a graphics
+    /// adapter is to draw more than a little of one field without light, and no way of drawing is asked for.
+    ///
+    /// # Errors
+    ///
+    /// As [`Plan::new`].
+    pub fn follows_costs(scene: &Scene, mesh: &TetMesh, device: Option<&Device>) -> Result<bool, SceneError> {
+        let method = method_of(scene)?;
+        if look::is_asked(scene) || !method.follows_costs() {
+            return Ok(false);
+        }
+        let (backend, _) = choose_backend(&method, device)?;
+        let view = scene.camera.view(scene.size)?;
+        Ok(backend == Backend::Gpu && !Work::new(mesh, &view).is_small())
     }
 }
 
@@ -280,12 +304,12 @@ fn of_surfaces(scene: &Scene) -> Option<String> {
 }
 
 fn choose_backend(method: &Method, device: Option<&Device>) -> Result<(Backend, String), SceneError> {
-    // The march blends nothing, and other formats every device blends.
-    let marches = method.marches();
+    // Marches and tiles blend nothing, and other formats every device blends.
+    let marches = method.marches() || method.projection == CellProjection::Tiles;
     let blends = |d: &Device| d.blends_f32 || marches || method.target != Target::Rgba32f;
     let cannot_blend = |d: &Device| {
         SceneError::Method(format!(
-            "{} cannot blend 32-bit floating-point targets: use --projection march, --backend cpu, or --target rgba16f, \
+            "{} cannot blend 32-bit floating-point targets: use --projection tiles or march, --backend cpu, or --target rgba16f, \
              which is off by up to 5e-2",
             d.name
         ))
@@ -337,22 +361,33 @@ fn doubts_of(order: Order) -> Option<&'static str> {
     }
 }
 
-/// The march where single precision cannot be blended, unless another is asked for.
-fn choose_projection(method: &Method, backend: Backend, device: Option<&Device>) -> CellProjection {
-    match method.projection {
-        CellProjection::Auto
-            if backend == Backend::Gpu && device.is_some_and(|d| !d.blends_f32) && method.marches() =>
-        {
-            CellProjection::March
+/// What the device was measured to do fastest, or else the march where single precision cannot be blended, unless another is
+/// asked for; and why it is that and no other. `work` is that of one field without light, of which costs are known.
+fn choose_projection(
+    method: &Method,
+    backend: Backend,
+    device: Option<&Device>,
+    work: Option<&Work>,
+) -> (CellProjection, Option<String>) {
+    if method.projection != CellProjection::Auto {
+        return (method.projection, None);
+    }
+    let device = device.filter(|_| backend == Backend::Gpu);
+    let measured = device.and_then(|d| Some((d, d.costs.as_ref()?))).zip(work.filter(|work| !work.is_small()));
+    if let Some((projection, why)) = measured.and_then(|((d, costs), work)| costs.choose(method, work, d.blends_f32)) {
+        return (projection, Some(why));
+    }
+    match device {
+        Some(d) if !d.blends_f32 && method.marches() => {
+            (CellProjection::March, Some(format!("{} blends no 32-bit floats", d.name)))
         }
-        CellProjection::Auto => CellProjection::Pt,
-        asked => asked,
+        _ => (CellProjection::Pt, None),
     }
 }
 
 /// The best that the adapter can blend, unless one is asked for.
 fn choose_target(asked: Target, projection: CellProjection, device: Option<&Device>) -> (Target, String) {
-    if projection == CellProjection::March {
+    if matches!(projection, CellProjection::March | CellProjection::Tiles) {
         return (Target::Rgba32f, "composited in registers".into());
     }
     let target = match asked {
@@ -411,7 +446,7 @@ mod tests {
     use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 
     use super::*;
-    use crate::{Camera, Method, Projection};
+    use crate::{Camera, Cost, Method, Projection};
 
     /// Cubes side by side along x, six cells each, from 0 to `n`, with the scalar x; the last point's value is missing.
     fn row(n: usize) -> TetMesh {
@@ -460,7 +495,7 @@ mod tests {
     const GREY: [f64; 3] = [0.5; 3];
 
     fn device(software: bool, blends_f32: bool) -> Device {
-        Device { name: "adapter".into(), software, blends_f32, norm16: false }
+        Device { name: "adapter".into(), driver: "1.2".into(), software, blends_f32, norm16: false, costs: None }
     }
 
     #[test]
@@ -569,6 +604,39 @@ mod tests {
         assert!(plan.warnings.iter().any(|w| w.contains("rgba16f") && w.contains("5e-2")), "{:?}", plan.warnings);
         let error = planned(Method { target: Target::Rgba32f, ..on_gpu }).unwrap_err().to_string();
         assert!(error.contains("cannot blend") && error.contains("rgba16f"), "{error}");
+    }
+
+    #[test]
+    fn a_measured_device_is_drawn_on_the_cheapest_way() {
+        let mesh = row(4);
+        let cheap = |fragment| Cost { picture: 1e4, cell: 1.0, fragment };
+        let costs = Costs { pt: cheap(3.0), tiles: cheap(1.0), march: cheap(2.0) };
+        let measured = Device { costs: Some(costs), ..device(false, true) };
+        let mut scene = scene(&mesh, &[GREY, [1.0; 3]], Method::default());
+        let planned = |scene: &Scene, device: &Device| {
+            let plan = Plan::new(scene, &mesh, Some(device)).unwrap();
+            (plan.projection, plan.to_string().contains("measured"))
+        };
+        let asks = |scene: &Scene| Plan::follows_costs(scene, &mesh, Some(&measured)).unwrap();
+        // A picture of ten by ten pixels is drawn before any is found to be faster.
+        assert_eq!((planned(&scene, &measured), asks(&scene)), ((CellProjection::Pt, false), false));
+        scene.size = [4000, 4000];
+        assert_eq!((planned(&scene, &measured), asks(&scene)), ((CellProjection::Tiles, true), true));
+        assert_eq!(planned(&scene, &device(false, true)), (CellProjection::Pt, false));
+        let half = Device { costs: Some(costs), ..device(false, false) };
+        let dear = Device { costs: Some(Costs { tiles: cheap(9.0), pt: cheap(0.5), ..costs }), ..half };
+        assert_eq!(planned(&scene, &dear), (CellProjection::March, true), "nothing is blended there");
+        // Light costs what was not measured.
+        let gradients = vec![DVec3::X; mesh.points().len()];
+        let lit = Scene {
+            lighting: Some(crate::Lighting { light: tetlux_optics::Light::default(), gradients }),
+            ..scene.clone()
+        };
+        assert_eq!((planned(&lit, &measured), asks(&lit)), ((CellProjection::Pt, false), false));
+        scene.method.projection = CellProjection::Vicp;
+        assert_eq!((planned(&scene, &measured), asks(&scene)), ((CellProjection::Vicp, false), false));
+        scene.method = Method { backend: Backend::Cpu, ..Method::default() };
+        assert!(!asks(&scene));
     }
 
     #[test]

@@ -7,6 +7,7 @@ pub(crate) fn of_projection(projection: CellProjection) -> &'static str {
         CellProjection::Auto | CellProjection::Pt => "a compute stage projects each cell once",
         CellProjection::Balanced => "distances and scalars found at vertices, and interpolated",
         CellProjection::March => "every pixel walks from cell to cell, without order or blending",
+        CellProjection::Tiles => "cells binned into tiles in their order, composited in registers, without blending",
         CellProjection::Vicp => "front faces are drawn, fragments find the back end",
         CellProjection::Gator => "the vertex stage projects each cell, once for every vertex of its triangles",
     }

@@ -20,7 +20,7 @@ fn assert_exact(what: &str, parts: &Parts, camera: Camera) -> usize {
     let scene = scene(&mesh, transfer(&colors, &[[-2.0, 4.0], [0.0, 1.0], [2.0, 6.0]]), camera, [64, 56]);
     let truth = reference(&mesh, &scene);
     assert!(truth.iter().filter(|p| p[3] > 0.1).count() > 100, "{what}: the mesh is seen");
-    for way in [Way::GpuExact, Way::CpuExact] {
+    for way in [Way::GpuExact, Way::GpuTiles, Way::CpuExact] {
         let error = largest_error(render(&mesh, &scene, way).pixels(), &truth);
         println!("{what}, {way:?}: max {error:.1e}");
         assert!(error < TOLERANCE, "{what}, {way:?}: {error:.2e}");
@@ -71,7 +71,7 @@ fn a_tangle_is_drawn_with_a_warning() {
     let camera = perspective(DVec3::new(5.0, 3.0, 4.0), DVec3::ZERO, 40.0);
     let scene = scene(&mesh, transfer(&[[-2.0, 1.0, 0.0, 0.0], [2.0, 0.0, 0.0, 1.0]], &[[0.0, 1.0]]), camera, [48, 40]);
     let truth = reference(&mesh, &scene);
-    for way in [Way::GpuExact, Way::CpuExact] {
+    for way in [Way::GpuExact, Way::GpuTiles, Way::CpuExact] {
         let frame = renderer().render(&scene, &Model::new(&mesh), &plan(&mesh, &scene, way));
         let frame = frame.unwrap_or_else(|e| panic!("{way:?}: {e}"));
         assert!(frame.order.overlap_pixels > 0 && frame.order.cells_in_groups > 1, "{:?}", frame.order);

@@ -7,6 +7,7 @@ mod device;
 mod functions;
 mod lookups;
 mod methods;
+mod outlines;
 mod pictures;
 mod published;
 mod thick;

@@ -7,7 +7,7 @@ use super::picture::Picture;
 use super::pipelines::Pipelines;
 use super::resident::Resident;
 use super::spent::{Count, counters};
-use super::stretch::{scissor, stretches};
+use super::stretch::{group_ends, scissor, stretches};
 use super::surfaces;
 use super::tables;
 use super::variant::{Binding, CELL_BYTES, Geometry, Variant};
@@ -15,7 +15,7 @@ use super::{Drawn, Open};
 use crate::{Job, Resources};
 
 /// Invocations a workgroup of the compute stages, as shaders/stages have them.
-const WORKGROUP: u32 = 64;
+pub(super) const WORKGROUP: u32 = 64;
 
 /// Laid out as the shader's `Batch` (shaders/lib/mesh.wgsl).
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -57,6 +57,12 @@ impl<'a> Maker<'a> {
     /// Everything made so far.
     pub(super) fn made(&self) -> Resources {
         self.made.get()
+    }
+
+    pub(super) fn count_pipelines(&self, pipelines: usize) {
+        let mut made = self.made.get();
+        made.pipelines += pipelines;
+        self.made.set(made);
     }
 
     pub(super) fn count(&self, buffers: usize, textures: usize, bytes: u64) {
@@ -121,6 +127,10 @@ impl<'a> Maker<'a> {
             Binding::Order => self.filled("order", bytemuck::cast_slice(job.order), storage),
             Binding::Seen => self.filled("points as seen", bytemuck::cast_slice(job.seen), storage),
             Binding::EntryPieces => self.filled("pieces of cells", bytemuck::cast_slice(job.entry_pieces), storage),
+            Binding::GroupEnds => {
+                let ends = group_ends(job.order.len() as u32, job.groups);
+                self.filled("ends of groups", bytemuck::cast_slice(&ends), storage)
+            }
             Binding::Spent => counters(self),
             Binding::Seconds | Binding::Gradients | Binding::Look | Binding::Widgets | Binding::Texels => {
                 let contents = job.look.as_ref().map_or(Vec::new(), |look| look::contents(look, binding));

@@ -37,6 +37,20 @@ pub(super) fn stretches(cells: u32, groups: &[Range<u32>], batch: u32) -> Vec<St
     stretches
 }
 
+/// The groups that are sorted for every pixel.
+pub(super) fn sorted(groups: &[Range<u32>]) -> impl Iterator<Item = &Range<u32>> {
+    groups.iter().filter(|group| group.end - group.start <= LARGEST_GROUP)
+}
+
+/// For each position in the order one past the last that has no order against it.
+pub(super) fn group_ends(cells: u32, groups: &[Range<u32>]) -> Vec<u32> {
+    let mut ends: Vec<u32> = (1..=cells).collect();
+    for group in sorted(groups) {
+        ends[group.start as usize..group.end as usize].fill(group.end);
+    }
+    ends
+}
+
 /// Appends cells in batches, the last first.
 fn batches(cells: Range<u32>, batch: u32, stretches: &mut Vec<Stretch>) {
     let mut end = cells.end;
@@ -77,6 +91,15 @@ pub(super) fn scissor(job: &Job, cells: &Range<u32>) -> [u32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cells_of_small_groups_end_together() {
+        let large = 4..5 + LARGEST_GROUP;
+        let ends = group_ends(large.end + 1, &[1..3, large.clone()]);
+        assert_eq!(ends[..4], [1, 3, 3, 4]);
+        // Too large to be sorted.
+        assert!((4..=large.end).all(|i| ends[i as usize] == i + 1));
+    }
 
     #[test]
     fn every_cell_is_drawn_once_farthest_first_and_groups_whole() {

@@ -53,7 +53,7 @@ fn largest_difference(a: &Frame, b: &Frame) -> f32 {
 #[test]
 fn a_lost_device_is_an_error_once_and_opened_anew() {
     let mesh = mesh();
-    for projection in [CellProjection::Pt, CellProjection::March] {
+    for projection in [CellProjection::Pt, CellProjection::March, CellProjection::Tiles] {
         let renderer = Renderer::new();
         let method = Method { projection, ..Method::default() };
         let before = render(&renderer, &mesh, method).unwrap();
@@ -113,7 +113,7 @@ fn a_mesh_over_the_limits_is_refused_by_name() {
     let mesh = mesh();
     for (bytes, what) in [(8 << 10, "the mesh's cells"), (2 << 10, "the mesh's points")] {
         let renderer = restricted(FEATURES, |limits| limits.max_storage_buffer_binding_size = bytes);
-        for projection in [CellProjection::Pt, CellProjection::March] {
+        for projection in [CellProjection::Pt, CellProjection::March, CellProjection::Tiles] {
             let error = render(&renderer, &mesh, Method { projection, ..Method::default() }).unwrap_err();
             assert!(matches!(error, RenderError::Limit { .. }), "{error:?}");
             let text = error.to_string();

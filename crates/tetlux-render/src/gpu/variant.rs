@@ -43,6 +43,9 @@ pub(crate) struct Geometry {
 /// Bytes of a projected cell: `Cell` of shaders/lib/cell.wgsl.
 pub(crate) const CELL_BYTES: u64 = 80;
 
+/// Bytes of a cell that is ready to be composited by tiles: `Ready` of shaders/lib/ready.wgsl.
+pub(crate) const READY_BYTES: u64 = 272;
+
 /// Bytes of a cell of balanced cell projection: `Balanced` of shaders/lib/balanced.wgsl.
 pub(crate) const BALANCED_BYTES: u64 = 32;
 
@@ -68,6 +71,7 @@ pub(crate) enum Binding {
     Texels = 12,
     Spent = 13,
     Seen = 14,
+    GroupEnds = 15,
 }
 
 impl Binding {
@@ -102,12 +106,20 @@ impl Variant {
 
     /// The same for groups: whatever the projection, each pixel finds its own segments.
     pub(crate) fn of_groups(self) -> Variant {
-        Variant { group: true, projection: CellProjection::Pt, interpolation: Interpolation::Ray, ..self }
+        match self.projection {
+            // Tiles sort them as they come to them.
+            CellProjection::Tiles => Variant { group: true, ..self },
+            _ => Variant { group: true, projection: CellProjection::Pt, interpolation: Interpolation::Ray, ..self },
+        }
     }
 
-    /// The stage that draws.
+    /// The stage that makes the picture.
     pub(crate) fn stage(&self) -> &'static str {
-        if self.group { "stages::group" } else { "stages::draw" }
+        match (self.projection, self.group) {
+            (CellProjection::Tiles, _) => "stages::tiles",
+            (_, true) => "stages::group",
+            (_, false) => "stages::draw",
+        }
     }
 
     /// The modules that stand for the axes of the shaders.
@@ -147,6 +159,7 @@ impl Variant {
             CellProjection::Gator => "source::computed",
             _ => "source::stored",
         };
+        let grouping = if self.group { "grouping::sorted" } else { "grouping::none" };
         let attributes = if self.given { "attributes::given" } else { "attributes::classified" };
         let data = if self.cell_data { "data::cell" } else { "data::point" };
         let surface = if self.surfaces { "surface::opaque" } else { "surface::none" };
@@ -161,6 +174,7 @@ impl Variant {
                 ("attributes", attributes),
                 ("data", data),
                 ("geometry", geometry),
+                ("grouping", grouping),
                 ("interpolation", interpolation),
                 ("output", output),
                 ("quantity", quantity),
@@ -220,6 +234,9 @@ impl Variant {
         bindings.extend(self.look.iter().flat_map(LookVariant::bindings));
         if self.projection != CellProjection::March {
             bindings.push(Binding::Seen);
+        }
+        if self.projection == CellProjection::Tiles && self.group {
+            bindings.push(Binding::GroupEnds);
         }
         bindings
     }
@@ -416,7 +433,9 @@ mod tests {
         let whole = variants.iter().filter(|v| v.classification != Classification::PostClip);
         let of_groups: Vec<Variant> = whole.map(|v| v.of_groups()).collect();
         for variant in variants.iter().chain(&of_groups) {
-            let stages = [variant.stage()].into_iter().chain(variant.geometry().compute);
+            let tiles = variant.projection == CellProjection::Tiles;
+            let binning = ["stages::count", "stages::fill"].into_iter().filter(|_| tiles);
+            let stages = [variant.stage()].into_iter().chain(variant.geometry().compute).chain(binning);
             let mut named: Vec<(u32, u32)> = stages
                 .flat_map(|stage| {
                     let module = validated(stage, variant);
@@ -429,6 +448,7 @@ mod tests {
             let mut bound: Vec<(u32, u32)> = variant.bindings().into_iter().map(|b| (0, b as u32)).collect();
             bound.push((1, 0));
             bound.extend(variant.geometry().compute.map(|_| (1, 1)));
+            bound.extend((2..=6).filter(|_| tiles).map(|binding| (1, binding)));
             bound.extend(tables_of(variant));
             bound.extend(variant.surfaces.then_some((3, 0)));
             assert_eq!(named, bound, "{variant:?}");

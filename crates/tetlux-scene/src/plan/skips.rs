@@ -27,6 +27,7 @@ fn fate(
 ) -> (Fate, String, usize) {
     let gpu = method.backend == Backend::Gpu;
     let marches = gpu && method.projection == CellProjection::March;
+    let tiles = gpu && method.projection == CellProjection::Tiles;
     let (kept, off) = (method.no_skip, |skip| method.no_skip.contains(skip));
     let skipped = |why: &str| (Fate::Skipped, why.to_string(), 0);
     let done = |why: &str| (Fate::Done, why.to_string(), 0);
@@ -48,7 +49,7 @@ fn fate(
             "no cell is so faint",
         ),
         Skip::Outside => by_cells(skips.outside, "no ray of the picture meets them", "every cell may be seen"),
-        Skip::Opaque if gpu && !marches => done("cells are drawn from back to front"),
+        Skip::Opaque if gpu && !marches && !tiles => done("cells are drawn from back to front"),
         Skip::Opaque => {
             skipped(&format!("what lies behind pixels that hide all but {:.1e} of the light", spent.hidden))
         }
