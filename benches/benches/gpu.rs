@@ -1,12 +1,11 @@
 //! The wgpu back end: the radix sort, and the stage that draws, by projection, on the procedural wing and, where its file is
 //! present, on the Blunt Fin. On a software driver these are processor seconds.
 
-use std::path::Path;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use tetlux_ingest::{ReadOptions, Split, read_tet_mesh};
-use tetlux_mesh::{TetMesh, procedural};
+use tetlux_benches::{blunt_fin_mesh, stage_time, wing_mesh};
+use tetlux_mesh::TetMesh;
 use tetlux_optics::accuracy::Random;
 use tetlux_render::{Model, Renderer};
 use tetlux_scene::{Backend, CellProjection, Order, Plan, SceneFile};
@@ -48,30 +47,18 @@ fn draw(c: &mut Criterion, name: &str, mesh: &TetMesh, file: &str) {
         scene.method.projection = projection;
         let plan = Plan::new(&scene, mesh, renderer.device()).unwrap_or_else(|e| panic!("{e}"));
         group.bench_function(format!("draw, {projection}"), |b| {
-            b.iter_custom(|runs| {
-                let frames = (0..runs).map(|_| renderer.render(&scene, &model, &plan));
-                let seconds = frames.map(|frame| {
-                    let frame = frame.unwrap_or_else(|e| panic!("{e}"));
-                    let found = frame.stages.iter().find(|s| s.name == "draw");
-                    found.map_or(0.0, |s| s.cpu.unwrap_or(s.wall))
-                });
-                Duration::from_secs_f64(seconds.sum())
-            });
+            b.iter_custom(|runs| stage_time(&renderer, &scene, &model, &plan, "draw", runs));
         });
     }
     group.finish();
 }
 
 fn wing(c: &mut Criterion) {
-    let wing = procedural::wing(1, 100_000);
-    let mesh = TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field]);
-    draw(c, "wing", &mesh.unwrap_or_else(|e| panic!("{e}")), WING);
+    draw(c, "wing", &wing_mesh(), WING);
 }
 
 fn blunt_fin(c: &mut Criterion) {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/tets/bluntfin_tets.vtu"));
-    if path.exists() {
-        let mesh = read_tet_mesh(path, &ReadOptions::default(), Split::default()).unwrap_or_else(|e| panic!("{e}"));
+    if let Some(mesh) = blunt_fin_mesh() {
         draw(c, "blunt fin smooth", &mesh, BLUNT_FIN);
     }
 }

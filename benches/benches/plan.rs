@@ -6,8 +6,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use tetlux_benches::wing_mesh;
 use tetlux_ingest::{ReadOptions, Split, read_tet_mesh};
-use tetlux_mesh::{TetMesh, procedural};
+use tetlux_mesh::TetMesh;
 use tetlux_render::{Model, Renderer};
 use tetlux_scene::{Backend, Order, Planner, Scene, SceneFile, Skip};
 
@@ -64,9 +65,7 @@ fn scene(mesh: &TetMesh, file: &str) -> Scene {
 }
 
 fn wing(c: &mut Criterion) {
-    let wing = procedural::wing(1, 100_000);
-    let mesh = TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field]);
-    let mesh = mesh.unwrap_or_else(|e| panic!("{e}"));
+    let mesh = wing_mesh();
     let (first, mut second) = (scene(&mesh, WING), scene(&mesh, WING));
     if let tetlux_optics::Classification::OneField(transfer) = &mut second.classification {
         *transfer = transfer.with_fewer_colors(0.1);

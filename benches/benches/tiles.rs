@@ -1,12 +1,11 @@
 //! The stages of the CPU back end's tiles, one thread, on the procedural wing and, where its file is present, on the
 //! Blunt Fin. Cells are in centroid order, or sorted in every pixel.
 
-use std::path::Path;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use tetlux_ingest::{ReadOptions, Split, read_tet_mesh};
-use tetlux_mesh::{TetMesh, procedural};
+use tetlux_benches::{blunt_fin_mesh, stage_time, wing_mesh};
+use tetlux_mesh::TetMesh;
 use tetlux_render::{Model, Renderer};
 use tetlux_scene::{Backend, Order, Plan, SceneFile};
 
@@ -28,15 +27,7 @@ fn stages(c: &mut Criterion, name: &str, mesh: &TetMesh, file: &str) {
         let plan = Plan::new(&scene, mesh, renderer.device()).unwrap_or_else(|e| panic!("{e}"));
         for stage in names {
             group.bench_function(format!("{stage}, order {order}"), |b| {
-                b.iter_custom(|runs| {
-                    let frames = (0..runs).map(|_| renderer.render(&scene, &model, &plan));
-                    let seconds = frames.map(|frame| {
-                        let frame = frame.unwrap_or_else(|e| panic!("{e}"));
-                        let found = frame.stages.iter().find(|s| s.name == *stage);
-                        found.map_or(0.0, |s| s.cpu.unwrap_or(s.wall))
-                    });
-                    Duration::from_secs_f64(seconds.sum())
-                });
+                b.iter_custom(|runs| stage_time(&renderer, &scene, &model, &plan, stage, runs));
             });
         }
     }
@@ -44,15 +35,11 @@ fn stages(c: &mut Criterion, name: &str, mesh: &TetMesh, file: &str) {
 }
 
 fn wing(c: &mut Criterion) {
-    let wing = procedural::wing(1, 100_000);
-    let mesh = TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field]);
-    stages(c, "wing", &mesh.unwrap_or_else(|e| panic!("{e}")), WING);
+    stages(c, "wing", &wing_mesh(), WING);
 }
 
 fn blunt_fin(c: &mut Criterion) {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/tets/bluntfin_tets.vtu"));
-    if path.exists() {
-        let mesh = read_tet_mesh(path, &ReadOptions::default(), Split::default()).unwrap_or_else(|e| panic!("{e}"));
+    if let Some(mesh) = blunt_fin_mesh() {
         SCENES.into_iter().for_each(|(name, file)| stages(c, name, &mesh, file));
     }
 }

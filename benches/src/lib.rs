@@ -1,11 +1,16 @@
 //! Scenes that the benchmarks share.
 
+use std::path::Path;
+use std::time::Duration;
+
 use glam::DVec3;
+use tetlux_ingest::{ReadOptions, read_tet_mesh};
 use tetlux_mesh::procedural::{self, Parts, Split};
 use tetlux_mesh::{Component, Field, TetMesh};
 use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
-use tetlux_scene::{Camera, Method, Scene};
+use tetlux_render::{Model, Renderer};
+use tetlux_scene::{Camera, Method, Plan, Scene};
 
 /// A cube of n^3 hexahedra split in six, with a field that has structure at every scale of the cells.
 pub fn cube(n: usize) -> (Parts, Field) {
@@ -18,6 +23,29 @@ pub fn cube(n: usize) -> (Parts, Field) {
 pub fn cube_mesh(n: usize) -> TetMesh {
     let (parts, field) = cube(n);
     TetMesh::assemble(&parts.points, &parts.cells, vec![field]).unwrap_or_else(|e| panic!("the cube is a mesh: {e}"))
+}
+
+/// The procedural wing's vortices, of about 100 000 cells.
+pub fn wing_mesh() -> TetMesh {
+    let wing = procedural::wing(1, 100_000);
+    TetMesh::assemble(&wing.parts.points, &wing.parts.cells, vec![wing.field]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The Blunt Fin, if its file is present.
+pub fn blunt_fin_mesh() -> Option<TetMesh> {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/tets/bluntfin_tets.vtu"));
+    let read = || read_tet_mesh(path, &ReadOptions::default(), tetlux_ingest::Split::default());
+    path.exists().then(|| read().unwrap_or_else(|e| panic!("{e}")))
+}
+
+/// Processor seconds of one stage of so many pictures; of the clock where the processor's are not known.
+pub fn stage_time(renderer: &Renderer, scene: &Scene, model: &Model, plan: &Plan, stage: &str, runs: u64) -> Duration {
+    let frames = (0..runs).map(|_| renderer.render(scene, model, plan).unwrap_or_else(|e| panic!("{e}")));
+    let seconds = frames.map(|frame| {
+        let found = frame.stages.iter().find(|s| s.name == stage);
+        found.map_or(0.0, |s| s.cpu.unwrap_or(s.wall))
+    });
+    Duration::from_secs_f64(seconds.sum())
 }
 
 /// Nine control points: gentle ramps if `smooth`, else narrow peaks.
