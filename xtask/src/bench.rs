@@ -3,9 +3,7 @@
 mod data;
 mod front;
 mod kraus;
-mod machine;
 mod measure;
-mod memory;
 mod moreland;
 mod page;
 mod paper;
@@ -24,10 +22,10 @@ use tetlux_image::write_atomically;
 use tetlux_render::Renderer;
 
 use crate::input::{Input, SceneArgs, parse_size};
+use crate::machine::Machine;
 use crate::methods::{GRADED, PEAK};
 use crate::report::{create_folder, write_json};
 use data::Data;
-use machine::Machine;
 use paper::{PAPERS, Paper};
 use race::Race;
 use scaling::Scaling;

@@ -12,6 +12,8 @@ mod explain;
 mod histogram;
 mod info;
 mod input;
+mod machine;
+mod memory;
 mod mesh_args;
 mod methods;
 mod order;
@@ -19,6 +21,7 @@ mod progress;
 mod render;
 mod report;
 mod sequence;
+mod stress;
 mod tables;
 mod test;
 mod testbed;
@@ -68,6 +71,9 @@ enum Command {
     /// Time methods against their error, beside their peers and the papers' own tables
     #[command(after_help = bench::EXAMPLES)]
     Bench(bench::Args),
+    /// Try hard geometry, optics, faults, hostile input and long runs, and write a page of what held
+    #[command(after_help = stress::EXAMPLES)]
+    Stress(stress::Args),
     /// Run format, lints, all tests and the documentation; installs a Vulkan driver on Debian if there is none
     Test,
 }
@@ -84,6 +90,7 @@ fn main() -> ExitCode {
         Command::Testbed(args) => testbed::run(&args).map(|()| true),
         Command::Methods(args) => methods::run(&args).map(|()| true),
         Command::Bench(args) => bench::run(&args).map(|()| true),
+        Command::Stress(args) => stress::run(&args),
         Command::Test => test::run().map(|()| true),
     };
     match result {

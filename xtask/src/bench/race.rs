@@ -11,9 +11,9 @@ use tetlux_scene::{Backend, CellProjection, Integrator, Interpolation, Order, Pl
 use super::Bench;
 use super::front::front;
 use super::measure::{Cost, Course, LONG, Runner, TURN, Way, median};
-use super::memory;
 use super::peer::{About, Peer, Rival, Took, VTK, read_ppm, write_job};
 use crate::input::Input;
+use crate::memory;
 use crate::{progress, truth};
 
 /// What the plan chooses comes first: targets are for it.

@@ -8,8 +8,8 @@ use tetlux_scene::{Backend, CellProjection, SceneFile};
 
 use super::Bench;
 use super::measure::{Cost, Course, LONG, Way};
-use super::memory;
 use crate::input::{BUILT_IN, Input, SceneArgs, wing};
+use crate::memory;
 use crate::testbed::meshes::{Setting, cube};
 
 #[derive(Serialize)]

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::machine::Machine;
 use super::measure::Cost;
 use super::race::{DEFAULT, Race};
 use super::scaling::{Grown, MeshPoint, Scaling};
 use super::table::number;
+use crate::machine::Machine;
 
 #[derive(Serialize)]
 pub(crate) struct Target {

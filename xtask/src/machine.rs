@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use serde::Serialize;
 use tetlux_render::Renderer;
 
-use super::memory;
+use crate::memory;
 
 #[derive(Serialize)]
 pub(crate) struct Machine {

@@ -1,0 +1,5 @@
+//! Cases of geometry.
+
+use super::case::Case;
+
+pub(crate) const CASES: &[Case] = &[];

@@ -1,0 +1,5 @@
+//! Cases of optics.
+
+use super::case::Case;
+
+pub(crate) const CASES: &[Case] = &[];
