@@ -96,6 +96,47 @@ fn impossible_values_are_named_with_key_and_line() {
 }
 
 #[test]
+fn even_opacity_takes_the_place_of_opacity_nodes() {
+    let color = "[transfer]\ncolor = [[0.0, 0.0, 0.0, 1.0], [1.0, 1.0, 0.0, 0.0]]\n";
+    for (rest, line, part) in [
+        ("even_opacity = 0.0", 3, "even_opacity"),
+        ("even_opacity = nan", 3, "even_opacity"),
+        ("opacity = [[0.0, 1.0]]\neven_opacity = 1.0", 4, "keep one"),
+    ] {
+        assert_says(&error(&format!("{color}{rest}")), &[&format!("a.toml:{line}:"), part]);
+    }
+    let preset = error("[transfer]\npreset = \"a.json\"\neven_opacity = 1.0");
+    assert_says(&preset, &["a.toml:3:", "even_opacity", "preset"]);
+    assert_says(&error("[transfer]\neven_opacity = 1.0"), &["color"]);
+    // A unit cube whose field fills its range evenly, but for the range's end: the mean chord is 4 volumes / surface.
+    let mesh = mesh(vec![("x", 1, &|p: DVec3| p.x)]);
+    let function = |rest: &str| {
+        let scene = SceneFile::parse("a.toml", &format!("{color}{rest}")).unwrap().scene(&mesh, 0).unwrap();
+        (scene.transfer().unwrap().clone(), scene.unit_distance)
+    };
+    let (even, unit) = function("fit_to_field = true\neven_opacity = 2.0");
+    let [low, high] = mesh.scalar("x", tetlux_mesh::Component::Magnitude).unwrap().range;
+    let ends = |transfer: &tetlux_optics::TransferFunction| {
+        let (colors, nodes) = (transfer.color_nodes(), transfer.opacity_nodes());
+        [colors[0].s, colors[1].s, nodes[0].s, nodes[nodes.len() - 1].s]
+    };
+    assert_eq!(ends(&even), [low, high, low, high]);
+    let mean = even.opacity_nodes().iter().map(|n| n.opacity).sum::<f64>() / even.opacity_nodes().len() as f64 / unit;
+    assert!(mean > 0.0 && mean.is_finite());
+    // Colours stay where they are without fit_to_field, depth is proportional, and unit distance scales it as ever.
+    assert_eq!(ends(&function("even_opacity = 2.0").0)[..2], [0.0, 1.0]);
+    let (half, _) = function("fit_to_field = true\neven_opacity = 1.0");
+    let (scaled, length) = function("fit_to_field = true\neven_opacity = 2.0\nunit_distance = 7.0");
+    for (node, (half, scaled)) in
+        even.opacity_nodes().iter().zip(half.opacity_nodes().iter().zip(scaled.opacity_nodes()))
+    {
+        assert!((half.opacity / node.opacity - 0.5).abs() < 1e-9, "{half:?}, {node:?}");
+        assert_eq!(scaled.opacity, node.opacity);
+    }
+    assert_eq!(length, 7.0);
+}
+
+#[test]
 fn surfaces_and_what_is_wrong_with_them() {
     for (rest, line, key) in [
         ("[[surface]]\ncolor = [1.0, 1.0, 1.0]", 4, "path"),

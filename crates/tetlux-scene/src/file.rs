@@ -10,7 +10,7 @@ use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_optics::widget::BivariateFunction;
 use tetlux_optics::{Classification, Emphasis, ImageFunction, Light};
 
-use crate::{Camera, Emphasized, Lighting, Method, Projection, Scene, SceneError, SurfaceSpec, document};
+use crate::{Camera, Emphasized, Lighting, Method, Projection, Scene, SceneError, SurfaceSpec, document, even_opacity};
 
 /// A scene without its mesh: plain values, which command-line flags may override.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,6 +63,13 @@ pub struct SceneFile {
 pub enum TransferSource {
     /// The scene file itself.
     Nodes(TransferFunction),
+    /// Colours of the scene file, and an opacity by how much of the mesh lies where: [`even_opacity`].
+    Even {
+        /// Luminance over the field; its opacity does not count.
+        color: TransferFunction,
+        /// The mean optical depth of the mesh where unit distance is its mean edge length, positive.
+        depth: f64,
+    },
     /// A ParaView preset file.
     Preset {
         /// The file: JSON or XML.
@@ -185,7 +192,11 @@ impl SceneFile {
             (None, Some(gradients)) if bivariate => Some(gradient_magnitude(&scalar, gradients)),
             (None, _) => None,
         };
-        let classification = self.classification(scalar.range, second.as_ref().map(|second| second.range))?;
+        // Of the default unit distance: another scales the depth, as it does any opacity.
+        let even = |scalar: &ScalarField, depth| {
+            even_opacity(mesh, scalar, with_width(scalar.range), depth, mesh.mean_edge_length())
+        };
+        let classification = self.classification(&scalar, second.as_ref(), &even)?;
         let emphasis = match (&self.emphasis, &classification) {
             (None, _) => None,
             (Some(emphasis), Classification::OneField(transfer)) => {
@@ -221,9 +232,14 @@ impl SceneFile {
         })
     }
 
-    /// The classification over fields of these ranges.
-    fn classification(&self, first: [f64; 2], second: Option<[f64; 2]>) -> Result<Classification, SceneError> {
-        let ranges = [first, second.unwrap_or(first)].map(with_width);
+    /// The classification of these fields; `even` makes an opacity of a mean depth.
+    fn classification(
+        &self,
+        first: &ScalarField,
+        second: Option<&ScalarField>,
+        even: &dyn Fn(&ScalarField, f64) -> Vec<OpacityNode>,
+    ) -> Result<Classification, SceneError> {
+        let ranges = [first, second.unwrap_or(first)].map(|scalar| with_width(scalar.range));
         match (&self.transfer, second) {
             (TransferSource::Widgets(function), _) => {
                 let fitted = || function.mapped(ranges.map(|r| r[0]), ranges.map(|r| r[1] - r[0]));
@@ -233,9 +249,9 @@ impl SceneFile {
             (TransferSource::Image { path, range, max_opacity }, _) => {
                 image_function(path, range.unwrap_or(ranges), *max_opacity).map(Classification::Image)
             }
-            (_, None) => Ok(Classification::OneField(self.transfer(first)?)),
+            (_, None) => Ok(Classification::OneField(self.transfer(first, even)?)),
             (_, Some(second)) => {
-                let (color, opacity) = (self.transfer(first)?, self.transfer(second)?);
+                let (color, opacity) = (self.transfer(first, even)?, self.transfer(second, even)?);
                 let nodes = TransferFunction::new(color.color_nodes().to_vec(), opacity.opacity_nodes().to_vec());
                 // Each list is one that a transfer function had already.
                 Ok(Classification::TwoFields(nodes.unwrap_or(color)))
@@ -243,15 +259,24 @@ impl SceneFile {
         }
     }
 
-    fn transfer(&self, field_range: [f64; 2]) -> Result<TransferFunction, SceneError> {
+    fn transfer(
+        &self,
+        scalar: &ScalarField,
+        even: &dyn Fn(&ScalarField, f64) -> Vec<OpacityNode>,
+    ) -> Result<TransferFunction, SceneError> {
         let range = match self.range {
             NodeRange::AsGiven => None,
             NodeRange::Given(range) => Some(range),
-            NodeRange::Field => Some(with_width(field_range)),
+            NodeRange::Field => Some(with_width(scalar.range)),
         };
         match (&self.transfer, range) {
             (TransferSource::Nodes(nodes), None) => Ok(nodes.clone()),
             (TransferSource::Nodes(nodes), Some(range)) => Ok(stretched(nodes, range)),
+            (TransferSource::Even { color, depth }, range) => {
+                let color = range.map_or_else(|| color.clone(), |range| stretched(color, range));
+                let nodes = TransferFunction::new(color.color_nodes().to_vec(), even(scalar, *depth));
+                nodes.map_err(|error| self.missing(error.to_string()))
+            }
             (TransferSource::Preset { path, name }, range) => {
                 let failed = |source| SceneError::Preset { path: path.clone(), source };
                 let preset = read_preset(&read_text(path)?, name.as_deref()).map_err(failed)?;

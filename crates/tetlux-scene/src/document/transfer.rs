@@ -17,6 +17,8 @@ use crate::file::{FieldSpec, NodeRange, TransferSource, UnitDistance};
 pub(super) struct Transfer {
     color: Option<Vec<Spanned<[f64; 4]>>>,
     opacity: Option<Vec<Spanned<[f64; 2]>>>,
+    /// In place of opacity: a mean optical depth.
+    even_opacity: Option<Spanned<f64>>,
     preset: Option<PathBuf>,
     preset_name: Option<String>,
     range: Option<Spanned<[f64; 2]>>,
@@ -79,7 +81,7 @@ impl Source<'_> {
     ) -> Result<TransferSource, SceneError> {
         let refuse = |message: &str| Err(self.value(transfer, "transfer", message.into()));
         let t = transfer.get_ref();
-        let one_field = t.preset.is_some() || t.color.is_some() || t.opacity.is_some();
+        let one_field = t.preset.is_some() || t.color.is_some() || t.opacity.is_some() || t.even_opacity.is_some();
         if usize::from(one_field) + usize::from(t.image.is_some()) + usize::from(!widgets.is_empty()) > 1 {
             return refuse("has more than one of nodes (or a preset), an image and widgets: keep one of them");
         }
@@ -95,20 +97,40 @@ impl Source<'_> {
         if let Some(opacity) = &t.max_opacity {
             return Err(self.value(opacity, "max_opacity", "is for images: opacity nodes have their own".into()));
         }
+        let even = self.positive(t.even_opacity.as_ref(), "even_opacity")?;
+        if let Some(at) = t.even_opacity.as_ref().filter(|_| t.opacity.is_some() || t.preset.is_some()) {
+            return Err(self.value(
+                at,
+                "even_opacity",
+                "is given and opacity or a preset too: keep one of them".into(),
+            ));
+        }
         match (&t.preset, &t.color, &t.opacity) {
             (Some(preset), None, None) => {
                 Ok(TransferSource::Preset { path: beside(preset.clone()), name: t.preset_name.clone() })
             }
             (Some(_), ..) => refuse("has a preset and nodes: keep one of them"),
-            (None, Some(color), Some(opacity)) => {
+            (None, Some(color), opacity) if opacity.is_some() || even.is_some() => {
                 if t.preset_name.is_some() {
                     return refuse("has a preset_name without a preset");
                 }
                 let nodes = TransferFunction::new(
                     color.iter().map(|n| *n.get_ref()).map(|[s, r, g, b]| ColorNode { s, rgb: [r, g, b] }).collect(),
-                    opacity.iter().map(|n| *n.get_ref()).map(|[s, opacity]| OpacityNode { s, opacity }).collect(),
+                    match opacity {
+                        Some(nodes) => {
+                            nodes.iter().map(|n| *n.get_ref()).map(|[s, opacity]| OpacityNode { s, opacity }).collect()
+                        }
+                        None => {
+                            let first = color.first().map_or(0.0, |n| n.get_ref()[0]);
+                            vec![OpacityNode { s: first, opacity: 0.0 }]
+                        }
+                    },
                 );
-                nodes.map(TransferSource::Nodes).map_err(|error| {
+                let source = |nodes| match even {
+                    Some(depth) => TransferSource::Even { color: nodes, depth },
+                    None => TransferSource::Nodes(nodes),
+                };
+                nodes.map(source).map_err(|error| {
                     use TransferFunctionError::{Crowded, Empty, Order, Position, Value};
                     let (kind, index) = match error {
                         Position { kind, index, .. }
@@ -119,13 +141,16 @@ impl Source<'_> {
                     };
                     match kind {
                         NodeKind::Color => self.value(&color[index], "color", error.to_string()),
-                        NodeKind::Opacity => self.value(&opacity[index], "opacity", error.to_string()),
+                        NodeKind::Opacity => match opacity {
+                            Some(nodes) => self.value(&nodes[index], "opacity", error.to_string()),
+                            None => self.value(transfer, "transfer", error.to_string()),
+                        },
                     }
                 })
             }
             (None, ..) => refuse(
-                "needs color = [[scalar, red, green, blue], ...] and opacity = [[scalar, opacity], ...], \
-                 or preset = \"file.json\", or [[widget]] tables, or image = \"file.exr\"",
+                "needs color = [[scalar, red, green, blue], ...] and opacity = [[scalar, opacity], ...] \
+                 (or even_opacity = 1.0), or preset = \"file.json\", or [[widget]] tables, or image = \"file.exr\"",
             ),
         }
     }
