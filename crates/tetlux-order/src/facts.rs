@@ -2,6 +2,7 @@
 
 mod bytes;
 mod convex;
+mod surface;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use tetlux_mesh::{FACES, NONE, TetMesh};
 
+pub(crate) use self::surface::Surface;
 use crate::power::Spheres;
 
 /// Faces whose planes lie together.
@@ -38,7 +40,8 @@ pub struct Facts {
     /// Largest coordinate, relative to the mesh's origin.
     pub(crate) reach: f32,
     pub(crate) known: Known,
-    /// Found when first asked for.
+    /// Found when first asked for, as is what follows.
+    pub(crate) surface: OnceLock<Surface>,
     pub(crate) spheres: OnceLock<Spheres>,
 }
 
@@ -78,6 +81,7 @@ impl Facts {
                 non_manifold_faces: assembly.faces_non_manifold,
                 convex: false,
             },
+            surface: OnceLock::new(),
             spheres: OnceLock::new(),
         };
         facts.known.convex = facts.known.components == 1 && convex::is_convex(mesh, &facts);
@@ -123,6 +127,10 @@ impl Facts {
     /// convex: `power` orders it exactly. Found when first asked for.
     pub fn delaunay(&self, mesh: &TetMesh) -> bool {
         self.known.convex && self.spheres(mesh).locally_delaunay
+    }
+
+    pub(crate) fn surface(&self, mesh: &TetMesh) -> &Surface {
+        self.surface.get_or_init(|| Surface::new(mesh, self))
     }
 
     pub(crate) fn spheres(&self, mesh: &TetMesh) -> &Spheres {
