@@ -19,6 +19,9 @@ use crate::power::Spheres;
 /// Faces whose planes lie together.
 pub(crate) const LANES: usize = 8;
 
+/// So many cells may have one neighbour out of reach of a step.
+const FAR_SHARE: usize = 32;
+
 /// Planes of [`LANES`] faces: the unit normals' x, y and z, and the offsets.
 pub(crate) type Planes = [[f32; LANES]; 4];
 
@@ -42,6 +45,7 @@ pub struct Facts {
     pub(crate) known: Known,
     /// Found when first asked for, as is what follows.
     pub(crate) surface: OnceLock<Surface>,
+    pub(crate) steps: OnceLock<Option<Vec<[i16; 4]>>>,
     pub(crate) spheres: OnceLock<Spheres>,
 }
 
@@ -82,6 +86,7 @@ impl Facts {
                 convex: false,
             },
             surface: OnceLock::new(),
+            steps: OnceLock::new(),
             spheres: OnceLock::new(),
         };
         facts.known.convex = facts.known.components == 1 && convex::is_convex(mesh, &facts);
@@ -131,6 +136,19 @@ impl Facts {
 
     pub(crate) fn surface(&self, mesh: &TetMesh) -> &Surface {
         self.surface.get_or_init(|| Surface::new(mesh, self))
+    }
+
+    /// For each cell the way to the neighbours, as differences of indices; zero where there is none or it is too far.
+    /// `None` if that is the case for more than a few: then they are no shortcut.
+    pub(crate) fn steps(&self, mesh: &TetMesh) -> Option<&[[i16; 4]]> {
+        let find = || {
+            let step = |cell: usize, neighbor: u32| i16::try_from(i64::from(neighbor) - cell as i64).unwrap_or(0);
+            let around = mesh.neighbors().par_iter().enumerate();
+            let steps: Vec<[i16; 4]> = around.map(|(c, around)| around.map(|n| step(c, n))).collect();
+            let far = steps.par_iter().map(|steps| steps.iter().filter(|&&step| step == 0).count()).sum::<usize>();
+            (far.saturating_sub(self.boundary_faces()) <= self.cells() / FAR_SHARE).then_some(steps)
+        };
+        self.steps.get_or_init(find).as_deref()
     }
 
     pub(crate) fn spheres(&self, mesh: &TetMesh) -> &Spheres {

@@ -92,6 +92,7 @@ impl Facts {
                 convex: header.convex == 1,
             },
             surface: OnceLock::new(),
+            steps: OnceLock::new(),
             spheres: OnceLock::new(),
         };
         facts.fit(mesh).then_some(facts)
