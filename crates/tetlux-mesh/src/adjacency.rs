@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::NONE;
+use crate::{FACES, NONE};
 
 /// One side of a face: its vertices but the smallest, in ascending order, and where it belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,13 +54,20 @@ fn sorted4(cell: &[u32; 4]) -> ([(u32, u32); 4], bool) {
     (v, odd)
 }
 
+/// The vertices of the face opposite a cell's vertex at a place, but the smallest, in ascending order.
+fn rest(cell: &[u32; 4], place: usize) -> [u32; 2] {
+    let [a, b, c] = FACES[place].map(|i| cell[i]);
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    [a ^ b ^ c ^ low ^ high, high]
+}
+
 /// Vertices whose half-faces one thread matches in one go.
 const VERTICES: usize = 4096;
 
-/// Pairs of half-faces, and the number of faces that three or more cells share (these stay unpaired).
+/// Lists of pairs of half-faces, and the number of faces that three or more cells share (these stay unpaired).
 ///
 /// A counting sort puts the half-faces with the same smallest vertex together; these are compared with one another.
-pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Pair>, usize) {
+pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Vec<Pair>>, usize) {
     let mut starts = vec![0u32; points + 2];
     for cell in cells {
         // The face opposite the smallest vertex has the next one for its smallest, the others have the smallest.
@@ -74,7 +81,7 @@ pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Pair>, usize
         starts[i + 2] += starts[i + 1];
     }
     // Starts move to the next vertex's as the places fill.
-    let mut sorted = vec![HalfFace { rest: [0; 2], side: 0 }; 4 * cells.len()];
+    let mut sides = vec![0u32; 4 * cells.len()];
     for (c, cell) in cells.iter().enumerate() {
         let ([p, q, r, s], odd) = sorted4(cell);
         let side = |opposite: u32, odd: bool| (c as u32) << 3 | opposite | if odd { ODD } else { 0 };
@@ -82,40 +89,28 @@ pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Pair>, usize
         let place = *of_smallest as usize;
         *of_smallest += 3;
         // The boundary of an oriented cell: signs alternate.
-        sorted[place..place + 3].copy_from_slice(&[
-            HalfFace { rest: [r.0, s.0], side: side(q.1, !odd) },
-            HalfFace { rest: [q.0, s.0], side: side(r.1, odd) },
-            HalfFace { rest: [q.0, r.0], side: side(s.1, !odd) },
-        ]);
+        sides[place..place + 3].copy_from_slice(&[side(q.1, !odd), side(r.1, odd), side(s.1, !odd)]);
         let of_next = &mut starts[q.0 as usize + 1];
-        sorted[*of_next as usize] = HalfFace { rest: [r.0, s.0], side: side(p.1, odd) };
+        sides[*of_next as usize] = side(p.1, odd);
         *of_next += 1;
     }
 
-    let mut chunks = Vec::with_capacity(points.div_ceil(VERTICES));
-    let mut left = &mut sorted[..];
-    for first in (0..points).step_by(VERTICES) {
+    let matched = (0..points.div_ceil(VERTICES)).into_par_iter().map(|chunk| {
+        let first = chunk * VERTICES;
         let starts = &starts[first..points.min(first + VERTICES) + 1];
-        let (chunk, rest) = left.split_at_mut((starts[starts.len() - 1] - starts[0]) as usize);
-        chunks.push((chunk, starts));
-        left = rest;
-    }
-    let matched: Vec<(Vec<Pair>, usize)> = chunks
-        .into_par_iter()
-        .map(|(mut chunk, starts)| {
-            let (mut pairs, mut non_manifold) = (Vec::with_capacity(chunk.len() / 2), 0);
-            for ends in starts.windows(2) {
-                let (bucket, rest) = chunk.split_at_mut((ends[1] - ends[0]) as usize);
-                non_manifold += match_faces(bucket, &mut pairs);
-                chunk = rest;
-            }
-            (pairs, non_manifold)
-        })
-        .collect();
-    let non_manifold = matched.iter().map(|(_, count)| count).sum();
-    let mut pairs = Vec::with_capacity(matched.iter().map(|(pairs, _)| pairs.len()).sum());
-    matched.iter().for_each(|(matched, _)| pairs.extend_from_slice(matched));
-    (pairs, non_manifold)
+        let half_faces = (starts[starts.len() - 1] - starts[0]) as usize;
+        let (mut pairs, mut non_manifold, mut bucket) = (Vec::with_capacity(half_faces / 2), 0, Vec::new());
+        for ends in starts.windows(2) {
+            let half_face =
+                |&side: &u32| HalfFace { rest: rest(&cells[(side >> 3) as usize], (side & 3) as usize), side };
+            bucket.clear();
+            bucket.extend(sides[ends[0] as usize..ends[1] as usize].iter().map(half_face));
+            non_manifold += match_faces(&mut bucket, &mut pairs);
+        }
+        (pairs, non_manifold)
+    });
+    let (pairs, non_manifold): (Vec<Vec<Pair>>, Vec<usize>) = matched.unzip();
+    (pairs, non_manifold.into_iter().sum())
 }
 
 /// Half-faces of one smallest vertex above which they are sorted: each is compared with all others else.
@@ -150,9 +145,9 @@ fn match_faces(bucket: &mut [HalfFace], pairs: &mut Vec<Pair>) -> usize {
 }
 
 /// The neighbour table of the pairs that `keep` accepts.
-pub(crate) fn neighbors(cells: usize, pairs: &[Pair], keep: impl Fn(&Pair) -> bool) -> Vec<[u32; 4]> {
+pub(crate) fn neighbors(cells: usize, pairs: &[Vec<Pair>], keep: impl Fn(&Pair) -> bool) -> Vec<[u32; 4]> {
     let mut table = vec![[NONE; 4]; cells];
-    for pair in pairs.iter().filter(|p| keep(p)) {
+    for pair in pairs.iter().flatten().filter(|p| keep(p)) {
         let (cells, faces) = (pair.cells(), pair.faces());
         for side in 0..2 {
             table[cells[side] as usize][faces[side] as usize] = cells[1 - side];

@@ -34,6 +34,9 @@ pub struct Assembly {
 /// Most points, and most cells: u32::MAX is NONE, and half-faces, four a cell, are numbered with a bit to spare.
 const LARGEST: usize = u32::MAX as usize / 8;
 
+/// Cells that one thread looks at in one go.
+const CELLS: usize = 8192;
+
 impl TetMesh {
     /// Assembles a mesh of points in world space, cells by point index in any orientation, and fields.
     ///
@@ -60,10 +63,12 @@ impl TetMesh {
                 });
             }
         }
-        let outside = |cell: &[u32; 4]| cell.iter().copied().find(|&v| v as usize >= points.len());
-        if let Some(cell) = cells.par_iter().position_first(|cell| outside(cell).is_some()) {
-            let index = outside(&cells[cell]).unwrap_or(NONE);
-            return Err(MeshError::Index { cell, index, points: points.len() });
+        let largest = |cells: &[[u32; 4]]| cells.as_flattened().iter().fold(0, |largest, &v| v.max(largest));
+        if cells.par_chunks(CELLS).any(|cells| largest(cells) as usize >= points.len()) {
+            let vertices = cells.as_flattened().iter().enumerate();
+            if let Some((i, &index)) = { vertices }.find(|&(_, &v)| v as usize >= points.len()) {
+                return Err(MeshError::Index { cell: i / 4, index, points: points.len() });
+            }
         }
 
         let mut assembly = Assembly { points_given: points.len(), cells_given: cells.len(), ..Assembly::default() };
@@ -104,9 +109,11 @@ impl TetMesh {
         let (mut pairs, non_manifold) = face_pairs(points.len(), &tets);
         assembly.faces_non_manifold = non_manifold;
         if assembly.cells_flat > 0 {
-            orient_flat(&mut tets, &signs, &mut pairs);
+            let mut all = pairs.concat();
+            orient_flat(&mut tets, &signs, &mut all);
+            pairs = vec![all];
         }
-        assembly.faces_folded = pairs.iter().filter(|p| p.same_way()).count();
+        assembly.faces_folded = pairs.iter().flatten().filter(|p| p.same_way()).count();
         let neighbors = neighbors(tets.len(), &pairs, |p| !p.same_way());
         Ok(TetMesh { origin, points, cells: tets, neighbors, fields, assembly })
     }

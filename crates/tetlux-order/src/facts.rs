@@ -242,10 +242,10 @@ fn plane([a, b, c]: [Vec3; 3]) -> [f32; 4] {
     let [a, b, c]: [DVec3; 3] = [a, b, c].map(|p| p.as_dvec3());
     let (u, v) = (b - a, c - a);
     let normal = u.cross(v);
-    let length = normal.length();
-    if length <= NEAR_COLLINEAR * (u.length_squared() * v.length_squared()).sqrt() {
+    let square = normal.length_squared();
+    if square <= NEAR_COLLINEAR * NEAR_COLLINEAR * (u.length_squared() * v.length_squared()) {
         return [0.0; 4];
     }
-    let n = normal / length;
+    let n = normal * (1.0 / square.sqrt());
     [n.x as f32, n.y as f32, n.z as f32, -n.dot(a) as f32]
 }

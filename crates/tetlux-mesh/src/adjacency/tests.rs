@@ -4,9 +4,9 @@ use glam::DVec3;
 use proptest::prelude::*;
 
 use super::*;
+use crate::TetMesh;
 use crate::procedural::random::SplitMix64;
 use crate::procedural::{Parts, Split, grid};
-use crate::{FACES, TetMesh};
 
 /// A jittered grid, a random subset of its cells in random order, the vertices of each in random order.
 ///
@@ -98,6 +98,7 @@ fn sorting_four_knows_the_parity_of_each_face() {
             let (face, face_odd) = sorted3(FACES[place as usize].map(|i| cell[i]));
             assert!(!face.contains(&v));
             assert_eq!(odd ^ (k % 2 == 1), face_odd, "{cell:?}, opposite {v}");
+            assert_eq!(rest(&cell, place as usize), face[1..]);
         }
     }
 }
