@@ -1,5 +1,5 @@
-//! Orders: what is found once a mesh, and what each view costs by every method. On procedural meshes, and on the NASA
-//! data sets where they are at hand.
+//! Orders: a mesh assembled, what is found once for all its orders, and what each view costs by every method. On
+//! procedural meshes, and on the NASA data sets where they are at hand.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -69,6 +69,8 @@ fn order(c: &mut Criterion) {
     for (name, mesh) in meshes() {
         let mut group = c.benchmark_group(format!("order {name}"));
         group.sample_size(10).throughput(Throughput::Elements(mesh.cells().len() as u64));
+        let points: Vec<DVec3> = (0..mesh.points().len() as u32).map(|v| mesh.world(v)).collect();
+        group.bench_function("assemble", |b| b.iter(|| TetMesh::assemble(&points, mesh.cells(), vec![])));
         group.bench_function("facts", |b| b.iter(|| Facts::new(&mesh)));
         let facts = Facts::new(&mesh);
         let views = views(&mesh);

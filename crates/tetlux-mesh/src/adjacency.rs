@@ -1,95 +1,156 @@
 //! Which cells share a face.
 
+use rayon::prelude::*;
+
 use crate::{FACES, NONE};
 
-/// One side of a face: its vertices in ascending order, the parity of that sort, and where it belongs.
-#[derive(Clone, Copy)]
+/// One side of a face: its vertices but the smallest, in ascending order, and where it belongs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct HalfFace {
     rest: [u32; 2],
-    cell: u32,
-    /// Face number (0..4), with the parity of the outward order in bit 2.
-    face: u8,
+    /// The cell times 8, plus the place in it of the vertex opposite, and [`ODD`].
+    side: u32,
 }
 
-impl HalfFace {
-    fn odd(self) -> bool {
-        self.face & 4 != 0
+/// Ascending vertices are not in the order in which they run counter-clockwise seen from outside the cell.
+const ODD: u32 = 4;
+
+/// Two half-faces with the same three vertices.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pair([u32; 2]);
+
+impl Pair {
+    pub(crate) fn cells(self) -> [u32; 2] {
+        self.0.map(|side| side >> 3)
+    }
+
+    pub(crate) fn faces(self) -> [u8; 2] {
+        self.0.map(|side| (side & 3) as u8)
+    }
+
+    /// The outward orders run the same way: the cells lie on one side of the face as their vertices stand.
+    pub(crate) fn same_way(self) -> bool {
+        (self.0[0] ^ self.0[1]) & ODD == 0
+    }
+
+    /// The last two vertices of one of its cells changed places.
+    pub(crate) fn flip(&mut self, cell: u32) {
+        for side in self.0.iter_mut().filter(|side| **side >> 3 == cell) {
+            *side = cell << 3 | (*side & ODD ^ ODD) | [0, 1, 3, 2][(*side & 3) as usize];
+        }
     }
 }
 
-/// Two half-faces with the same three vertices.
-pub(crate) struct Pair {
-    pub(crate) cells: [u32; 2],
-    pub(crate) faces: [u8; 2],
-    /// The outward orders run the same way: the cells lie on one side of the face as their vertices stand.
-    pub(crate) same_way: bool,
-}
-
-/// Sorts three indices; the second result is true if the sort is an odd permutation.
-fn sorted3(mut v: [u32; 3]) -> ([u32; 3], bool) {
+/// The vertices of a cell in ascending order, each with its place; the second result is true if that is an odd
+/// permutation.
+fn sorted4(cell: &[u32; 4]) -> ([(u32, u32); 4], bool) {
+    let mut v = [0, 1, 2, 3].map(|i| (cell[i], i as u32));
     let mut odd = false;
-    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
-        if v[i] > v[j] {
-            v.swap(i, j);
-            odd = !odd;
-        }
+    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+        let turned = v[i].0 > v[j].0;
+        (v[i], v[j]) = if turned { (v[j], v[i]) } else { (v[i], v[j]) };
+        odd ^= turned;
     }
     (v, odd)
 }
 
-/// Pairs of half-faces, and the number of faces that three or more cells share (these stay unpaired).
-///
-/// A counting sort puts the half-faces with the same smallest vertex together; each short list is then sorted.
-pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Pair>, usize) {
-    let half_faces = || {
-        cells.iter().enumerate().flat_map(|(c, cell)| {
-            FACES.iter().enumerate().map(move |(f, face)| {
-                let (v, odd) = sorted3(face.map(|i| cell[i]));
-                (v[0] as usize, HalfFace { rest: [v[1], v[2]], cell: c as u32, face: f as u8 | u8::from(odd) << 2 })
-            })
-        })
-    };
-    let mut start = vec![0usize; points + 1];
-    for (smallest, _) in half_faces() {
-        start[smallest + 1] += 1;
-    }
-    for i in 0..points {
-        start[i + 1] += start[i];
-    }
-    let mut next = start.clone();
-    let mut sorted = vec![HalfFace { rest: [0; 2], cell: 0, face: 0 }; 4 * cells.len()];
-    for (smallest, half) in half_faces() {
-        sorted[next[smallest]] = half;
-        next[smallest] += 1;
-    }
-    drop(next);
+/// The vertices of the face opposite a cell's vertex at a place, but the smallest, in ascending order.
+fn rest(cell: &[u32; 4], place: usize) -> [u32; 2] {
+    let [a, b, c] = FACES[place].map(|i| cell[i]);
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    [a ^ b ^ c ^ low ^ high, high]
+}
 
-    let mut pairs = Vec::with_capacity(2 * cells.len());
-    let mut non_manifold = 0;
+/// Vertices whose half-faces one thread matches in one go.
+const VERTICES: usize = 4096;
+
+/// Lists of pairs of half-faces, and the number of faces that three or more cells share (these stay unpaired).
+///
+/// A counting sort puts the half-faces with the same smallest vertex together; these are compared with one another.
+pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Vec<Pair>>, usize) {
+    let mut starts = vec![0u32; points + 2];
+    for cell in cells {
+        // The face opposite the smallest vertex has the next one for its smallest, the others have the smallest.
+        let (low, high) = ([cell[0].min(cell[1]), cell[2].min(cell[3])], [cell[0].max(cell[1]), cell[2].max(cell[3])]);
+        let smallest = low[0].min(low[1]);
+        let next = low[0].max(low[1]).min(high[0]).min(high[1]);
+        starts[smallest as usize + 2] += 3;
+        starts[next as usize + 2] += 1;
+    }
     for i in 0..points {
-        let bucket = &mut sorted[start[i]..start[i + 1]];
-        bucket.sort_unstable_by_key(|h| (h.rest, h.cell));
-        for group in bucket.chunk_by(|a, b| a.rest == b.rest) {
-            match group {
-                [a, b] => pairs.push(Pair {
-                    cells: [a.cell, b.cell],
-                    faces: [a.face & 3, b.face & 3],
-                    same_way: a.odd() == b.odd(),
-                }),
-                [_] => {}
-                _ => non_manifold += 1,
+        starts[i + 2] += starts[i + 1];
+    }
+    // Starts move to the next vertex's as the places fill.
+    let mut sides = vec![0u32; 4 * cells.len()];
+    for (c, cell) in cells.iter().enumerate() {
+        let ([p, q, r, s], odd) = sorted4(cell);
+        let side = |opposite: u32, odd: bool| (c as u32) << 3 | opposite | if odd { ODD } else { 0 };
+        let of_smallest = &mut starts[p.0 as usize + 1];
+        let place = *of_smallest as usize;
+        *of_smallest += 3;
+        // The boundary of an oriented cell: signs alternate.
+        sides[place..place + 3].copy_from_slice(&[side(q.1, !odd), side(r.1, odd), side(s.1, !odd)]);
+        let of_next = &mut starts[q.0 as usize + 1];
+        sides[*of_next as usize] = side(p.1, odd);
+        *of_next += 1;
+    }
+
+    let matched = (0..points.div_ceil(VERTICES)).into_par_iter().map(|chunk| {
+        let first = chunk * VERTICES;
+        let starts = &starts[first..points.min(first + VERTICES) + 1];
+        let half_faces = (starts[starts.len() - 1] - starts[0]) as usize;
+        let (mut pairs, mut non_manifold, mut bucket) = (Vec::with_capacity(half_faces / 2), 0, Vec::new());
+        for ends in starts.windows(2) {
+            let half_face =
+                |&side: &u32| HalfFace { rest: rest(&cells[(side >> 3) as usize], (side & 3) as usize), side };
+            bucket.clear();
+            bucket.extend(sides[ends[0] as usize..ends[1] as usize].iter().map(half_face));
+            non_manifold += match_faces(&mut bucket, &mut pairs);
+        }
+        (pairs, non_manifold)
+    });
+    let (pairs, non_manifold): (Vec<Vec<Pair>>, Vec<usize>) = matched.unzip();
+    (pairs, non_manifold.into_iter().sum())
+}
+
+/// Half-faces of one smallest vertex above which they are sorted: each is compared with all others else.
+const FEW: usize = 100;
+
+/// Pairs those half-faces with one smallest vertex that two cells share; how many faces more cells share.
+fn match_faces(bucket: &mut [HalfFace], pairs: &mut Vec<Pair>) -> usize {
+    let mut non_manifold = 0;
+    let mut meet = |first: HalfFace, others: &[HalfFace]| match others {
+        [] => {}
+        [other] => pairs.push(Pair([first.side, other.side])),
+        _ => non_manifold += 1,
+    };
+    if bucket.len() > FEW {
+        bucket.sort_unstable_by_key(|half| (half.rest, half.side));
+        bucket.chunk_by(|a, b| a.rest == b.rest).for_each(|group| meet(group[0], &group[1..]));
+        return non_manifold;
+    }
+    let mut left = bucket;
+    while let [first, others @ ..] = left {
+        let mut same = 0;
+        for i in 0..others.len() {
+            if others[i].rest == first.rest {
+                others.swap(i, same);
+                same += 1;
             }
         }
+        meet(*first, &others[..same]);
+        left = &mut others[same..];
     }
-    (pairs, non_manifold)
+    non_manifold
 }
 
 /// The neighbour table of the pairs that `keep` accepts.
-pub(crate) fn neighbors(cells: usize, pairs: &[Pair], keep: impl Fn(&Pair) -> bool) -> Vec<[u32; 4]> {
+pub(crate) fn neighbors(cells: usize, pairs: &[Vec<Pair>], keep: impl Fn(&Pair) -> bool) -> Vec<[u32; 4]> {
     let mut table = vec![[NONE; 4]; cells];
-    for pair in pairs.iter().filter(|p| keep(p)) {
+    for pair in pairs.iter().flatten().filter(|p| keep(p)) {
+        let (cells, faces) = (pair.cells(), pair.faces());
         for side in 0..2 {
-            table[pair.cells[side] as usize][pair.faces[side] as usize] = pair.cells[1 - side];
+            table[cells[side] as usize][faces[side] as usize] = cells[1 - side];
         }
     }
     table

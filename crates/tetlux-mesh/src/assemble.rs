@@ -1,5 +1,7 @@
 //! From raw points and cells to a mesh.
 
+use std::hash::{BuildHasher, RandomState};
+
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -32,6 +34,9 @@ pub struct Assembly {
 /// Most points, and most cells: u32::MAX is NONE, and half-faces, four a cell, are numbered with a bit to spare.
 const LARGEST: usize = u32::MAX as usize / 8;
 
+/// Cells that one thread looks at in one go.
+const CELLS: usize = 8192;
+
 impl TetMesh {
     /// Assembles a mesh of points in world space, cells by point index in any orientation, and fields.
     ///
@@ -58,9 +63,11 @@ impl TetMesh {
                 });
             }
         }
-        for (c, cell) in cells.iter().enumerate() {
-            if let Some(&index) = cell.iter().find(|&&v| v as usize >= points.len()) {
-                return Err(MeshError::Index { cell: c, index, points: points.len() });
+        let largest = |cells: &[[u32; 4]]| cells.as_flattened().iter().fold(0, |largest, &v| v.max(largest));
+        if cells.par_chunks(CELLS).any(|cells| largest(cells) as usize >= points.len()) {
+            let vertices = cells.as_flattened().iter().enumerate();
+            if let Some((i, &index)) = { vertices }.find(|&(_, &v)| v as usize >= points.len()) {
+                return Err(MeshError::Index { cell: i / 4, index, points: points.len() });
             }
         }
 
@@ -72,38 +79,42 @@ impl TetMesh {
         let points: Vec<Vec3> = kept.iter().map(|&i| local[i as usize]).collect();
         drop(local);
 
-        let mut kept_cells = Vec::new();
-        let mut tets: Vec<[u32; 4]> = Vec::with_capacity(cells.len());
-        for (c, cell) in cells.iter().enumerate() {
-            let cell = cell.map(|v| target[v as usize]);
-            let repeated = (0..4).any(|i| (0..i).any(|j| cell[i] == cell[j]));
-            if !repeated {
-                tets.push(cell);
-                kept_cells.push(c);
-            }
-        }
-        assembly.cells_repeated = cells.len() - tets.len();
-        if tets.is_empty() {
+        let vertices = |cell: &[u32; 4]| cell.map(|v| target[v as usize]);
+        let repeats = |cell: &[u32; 4]| (0..4).any(|i| (0..i).any(|j| cell[i] == cell[j]));
+        let mut tets: Vec<[u32; 4]> = cells.par_iter().map(vertices).collect();
+        let mut fields = fields;
+        assembly.cells_repeated = tets.par_iter().filter(|cell| repeats(cell)).count();
+        if assembly.cells_repeated == cells.len() {
             return Err(MeshError::Empty { dropped: assembly.cells_repeated });
         }
-        let fields = if assembly.cells_repeated == 0 { fields } else { keep_cells(fields, &kept_cells) };
-
-        let signs: Vec<i8> = tets.par_iter().map(|cell| volume_sign(&points, cell)).collect();
-        for (cell, &sign) in tets.iter_mut().zip(&signs) {
-            if sign < 0 {
-                cell.swap(2, 3);
-                assembly.cells_inverted += 1;
-            }
+        if assembly.cells_repeated > 0 {
+            let kept: Vec<usize> = (0..cells.len()).filter(|&c| !repeats(&tets[c])).collect();
+            tets = kept.iter().map(|&c| tets[c]).collect();
+            fields = keep_cells(fields, &kept);
         }
+
+        let signs: Vec<i8> = tets
+            .par_iter_mut()
+            .map(|cell| {
+                let sign = volume_sign(&points, cell);
+                if sign < 0 {
+                    cell.swap(2, 3);
+                }
+                sign
+            })
+            .collect();
+        assembly.cells_inverted = signs.iter().filter(|&&s| s < 0).count();
         assembly.cells_flat = signs.iter().filter(|&&s| s == 0).count();
 
         let (mut pairs, non_manifold) = face_pairs(points.len(), &tets);
         assembly.faces_non_manifold = non_manifold;
         if assembly.cells_flat > 0 {
-            orient_flat(&mut tets, &signs, &mut pairs);
+            let mut all = pairs.concat();
+            orient_flat(&mut tets, &signs, &mut all);
+            pairs = vec![all];
         }
-        assembly.faces_folded = pairs.iter().filter(|p| p.same_way).count();
-        let neighbors = neighbors(tets.len(), &pairs, |p| !p.same_way);
+        assembly.faces_folded = pairs.iter().flatten().filter(|p| p.same_way()).count();
+        let neighbors = neighbors(tets.len(), &pairs, |p| !p.same_way());
         Ok(TetMesh { origin, points, cells: tets, neighbors, fields, assembly })
     }
 }
@@ -140,18 +151,35 @@ pub fn coincident(points: &[DVec3]) -> Result<Vec<u32>, MeshError> {
     recentre(points).map(|(_, local)| first_coincident(&local))
 }
 
+/// A table of the points met, by a hash of their bits: open addressing, at most half full.
 fn first_coincident(points: &[Vec3]) -> Vec<u32> {
     let bits = |i: u32| points[i as usize].to_array().map(f32::to_bits);
-    let mut sorted: Vec<u32> = (0..points.len() as u32).collect();
-    sorted.par_sort_unstable_by_key(|&i| (bits(i), i));
-    let mut first = vec![0u32; points.len()];
-    for group in sorted.chunk_by(|&a, &b| bits(a) == bits(b)) {
-        for &i in group {
-            first[i as usize] = group[0];
-        }
-    }
-    first
+    // Another one every time, so that no mesh is slow by design; what is found does not depend on it.
+    let seed = RandomState::new().hash_one(points.len());
+    let slots = (2 * points.len()).next_power_of_two().max(2);
+    let shift = u64::BITS - slots.trailing_zeros();
+    let mut table = vec![NONE; slots];
+    (0..points.len() as u32)
+        .map(|i| {
+            let [x, y, z] = bits(i).map(u64::from);
+            let folded = ((x << 32 | y) ^ seed).wrapping_mul(MIX);
+            let mut slot = ((folded ^ folded >> 32 ^ z).wrapping_mul(MIX) >> shift) as usize;
+            loop {
+                match table[slot] {
+                    NONE => {
+                        table[slot] = i;
+                        return i;
+                    }
+                    met if bits(met) == [x, y, z].map(|b| b as u32) => return met,
+                    _ => slot = (slot + 1) % slots,
+                }
+            }
+        })
+        .collect()
 }
+
+/// Odd, its bits without a pattern: 2^64 over the golden ratio.
+const MIX: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// Points to keep, in their order, and for every point the place of the one it became.
 fn merge_coincident(points: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
@@ -195,21 +223,28 @@ fn keep_cells(mut fields: Vec<Field>, kept: &[usize]) -> Vec<Field> {
 
 /// Exact sign of the volume of a cell.
 fn volume_sign(points: &[Vec3], cell: &[u32; 4]) -> i8 {
-    let [a, b, c, d] = cell.map(|v| {
-        let p = points[v as usize].as_dvec3();
-        robust::Coord3D { x: p.x, y: p.y, z: p.z }
-    });
+    let [a, b, c, d] = cell.map(|v| points[v as usize].as_dvec3());
+    let (u, v, w) = (b - a, c - a, d - a);
+    let (cross, size) = (u.cross(v), u.abs().element_sum() * v.abs().element_sum());
+    let volume = cross.dot(w);
+    if volume.abs() > VOLUME_ERROR * size * w.abs().element_sum() {
+        return if volume > 0.0 { 1 } else { -1 };
+    }
+    let [a, b, c, d] = [a, b, c, d].map(|p| robust::Coord3D { x: p.x, y: p.y, z: p.z });
     // orient3d is positive where d is below the plane of a, b, c: the opposite of our sign.
     let sign = -robust::orient3d(a, b, c, d);
     i8::from(sign > 0.0) - i8::from(sign < 0.0)
 }
 
+/// Above Shewchuk's bound, 7.8e-16 over the sum of the products' magnitudes, which sums of components bound in turn.
+const VOLUME_ERROR: f64 = 1e-15;
+
 /// Gives flat cells, which have no orientation of their own, the one that fits their neighbours'.
 fn orient_flat(cells: &mut [[u32; 4]], signs: &[i8], pairs: &mut [Pair]) {
     let mut around: Vec<Vec<usize>> = vec![Vec::new(); cells.len()];
     for (p, pair) in pairs.iter().enumerate() {
-        if pair.cells.iter().any(|&c| signs[c as usize] == 0) {
-            for &c in &pair.cells {
+        if pair.cells().iter().any(|&c| signs[c as usize] == 0) {
+            for c in pair.cells() {
                 around[c as usize].push(p);
             }
         }
@@ -221,12 +256,13 @@ fn orient_flat(cells: &mut [[u32; 4]], signs: &[i8], pairs: &mut [Pair]) {
     loop {
         while let Some(c) = queue.pop() {
             for &p in &around[c] {
-                let other = pairs[p].cells[usize::from(pairs[p].cells[0] as usize == c)] as usize;
+                let cells_of = pairs[p].cells();
+                let other = cells_of[usize::from(cells_of[0] as usize == c)] as usize;
                 if oriented[other] {
                     continue;
                 }
                 oriented[other] = true;
-                if pairs[p].same_way {
+                if pairs[p].same_way() {
                     flip(other, cells, &around, pairs);
                 }
                 queue.push(other);
@@ -248,13 +284,7 @@ fn orient_flat(cells: &mut [[u32; 4]], signs: &[i8], pairs: &mut [Pair]) {
 fn flip(cell: usize, cells: &mut [[u32; 4]], around: &[Vec<usize>], pairs: &mut [Pair]) {
     cells[cell].swap(2, 3);
     for &p in &around[cell] {
-        let pair = &mut pairs[p];
-        pair.same_way = !pair.same_way;
-        for side in 0..2 {
-            if pair.cells[side] as usize == cell {
-                pair.faces[side] = [0, 1, 3, 2][pair.faces[side] as usize];
-            }
-        }
+        pairs[p].flip(cell as u32);
     }
 }
 

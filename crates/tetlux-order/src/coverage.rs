@@ -33,7 +33,7 @@ pub(crate) struct Pixels {
 }
 
 /// Relative errors of a projection to pixels are far below this, in pixels, while [`SHALLOW`] holds.
-const PROJECTION_ERROR: f64 = 1e-3;
+pub(crate) const PROJECTION_ERROR: f64 = 1e-3;
 
 /// Depth, over the sum of the distances along the axes, below which a vertex is not projected.
 const SHALLOW: f64 = 1e-6;
@@ -53,8 +53,13 @@ impl Rays {
         self.size
     }
 
+    /// 1, or -1 if the picture is mirrored.
+    pub(crate) fn handedness(&self) -> i32 {
+        if self.right.cross(self.down).dot(self.forward) < 0.0 { -1 } else { 1 }
+    }
+
     /// Pixels from the middle of the picture to the centre of a column or row.
-    fn center_offset(&self, axis: usize, index: f64) -> f64 {
+    pub(crate) fn center_offset(&self, axis: usize, index: f64) -> f64 {
         index + 0.5 - f64::from(self.size[axis]) * 0.5
     }
 
@@ -63,29 +68,37 @@ impl Rays {
         self.right * (x * self.pixel) + self.down * (y * self.pixel)
     }
 
+    /// Where a point is seen, in pixels to the right and down from the middle of the picture, to within
+    /// [`PROJECTION_ERROR`] as far as the picture reaches; `None` if it is not well before the eye.
+    pub(crate) fn project(&self, p: Vec3) -> Option<[f64; 2]> {
+        let from_eye = p.as_dvec3() - self.eye;
+        let depth = self.forward.dot(from_eye);
+        let seen = self.parallel || depth > SHALLOW * from_eye.abs().element_sum();
+        let scale = 1.0 / (if self.parallel { 1.0 } else { depth } * self.pixel);
+        seen.then(|| [self.right, self.down].map(|axis| axis.dot(from_eye) * scale))
+    }
+
     /// All pixels whose rays may pass through a triangle; none if certainly none does.
     pub(crate) fn bounds(&self, corners: [Vec3; 3]) -> Pixels {
-        let from_eye = corners.map(|p| p.as_dvec3() - self.eye);
-        let depth = from_eye.map(|p| self.forward.dot(p));
-        let distance = from_eye.map(|p| p.abs().element_sum());
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        if self.parallel || (0..3).all(|i| depth[i] > SHALLOW * distance[i]) {
-            for (p, depth) in from_eye.iter().zip(depth) {
-                let scale = 1.0 / (if self.parallel { 1.0 } else { depth } * self.pixel);
-                for (axis, direction) in [self.right, self.down].iter().enumerate() {
-                    let at = direction.dot(*p) * scale;
-                    low[axis] = low[axis].min(at);
-                    high[axis] = high[axis].max(at);
-                }
-            }
-        } else if (0..3).any(|i| depth[i] > -SHALLOW * distance[i]) && !self.passes_by(corners) {
-            (low, high) = ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]);
+        if let [Some(a), Some(b), Some(c)] = corners.map(|p| self.project(p)) {
+            return self.pixels([a, b, c]);
         }
+        let from_eye = corners.map(|p| p.as_dvec3() - self.eye);
+        let before = |p: &DVec3| self.forward.dot(*p) > -SHALLOW * p.abs().element_sum();
+        if from_eye.iter().any(before) && !self.passes_by(corners) {
+            return self.pixels([[f64::NEG_INFINITY; 2], [f64::INFINITY; 2], [0.0; 2]]);
+        }
+        Pixels { columns: 0..0, rows: 0..0 }
+    }
+
+    /// All pixels whose rays may pass through a triangle whose corners are seen at these places.
+    pub(crate) fn pixels(&self, [a, b, c]: [[f64; 2]; 3]) -> Pixels {
         let range = |axis: usize| {
+            let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
             // Casts saturate, so that infinite bounds are those of the picture.
             // The first pixel may be one too many.
-            let first = (low[axis] - PROJECTION_ERROR - self.center_offset(axis, 0.0)) as u32;
-            let end = (high[axis] + PROJECTION_ERROR - self.center_offset(axis, -1.0)) as u32;
+            let first = (low - PROJECTION_ERROR - self.center_offset(axis, 0.0)) as u32;
+            let end = (high + PROJECTION_ERROR - self.center_offset(axis, -1.0)) as u32;
             first.min(self.size[axis])..end.min(self.size[axis])
         };
         Pixels { columns: range(0), rows: range(1) }

@@ -2,6 +2,7 @@
 
 mod bytes;
 mod convex;
+mod surface;
 #[cfg(test)]
 mod tests;
 
@@ -12,10 +13,14 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use tetlux_mesh::{FACES, NONE, TetMesh};
 
+pub(crate) use self::surface::Surface;
 use crate::power::Spheres;
 
 /// Faces whose planes lie together.
 pub(crate) const LANES: usize = 8;
+
+/// So many cells may have one neighbour out of reach of a step.
+const FAR_SHARE: usize = 32;
 
 /// Planes of [`LANES`] faces: the unit normals' x, y and z, and the offsets.
 pub(crate) type Planes = [[f32; LANES]; 4];
@@ -38,7 +43,9 @@ pub struct Facts {
     /// Largest coordinate, relative to the mesh's origin.
     pub(crate) reach: f32,
     pub(crate) known: Known,
-    /// Found when first asked for.
+    /// Found when first asked for, as is what follows.
+    pub(crate) surface: OnceLock<Surface>,
+    pub(crate) steps: OnceLock<Option<Vec<[i16; 4]>>>,
     pub(crate) spheres: OnceLock<Spheres>,
 }
 
@@ -78,6 +85,8 @@ impl Facts {
                 non_manifold_faces: assembly.faces_non_manifold,
                 convex: false,
             },
+            surface: OnceLock::new(),
+            steps: OnceLock::new(),
             spheres: OnceLock::new(),
         };
         facts.known.convex = facts.known.components == 1 && convex::is_convex(mesh, &facts);
@@ -123,6 +132,23 @@ impl Facts {
     /// convex: `power` orders it exactly. Found when first asked for.
     pub fn delaunay(&self, mesh: &TetMesh) -> bool {
         self.known.convex && self.spheres(mesh).locally_delaunay
+    }
+
+    pub(crate) fn surface(&self, mesh: &TetMesh) -> &Surface {
+        self.surface.get_or_init(|| Surface::new(mesh, self))
+    }
+
+    /// For each cell the way to the neighbours, as differences of indices; zero where there is none or it is too far.
+    /// `None` if that is the case for more than a few: then they are no shortcut.
+    pub(crate) fn steps(&self, mesh: &TetMesh) -> Option<&[[i16; 4]]> {
+        let find = || {
+            let step = |cell: usize, neighbor: u32| i16::try_from(i64::from(neighbor) - cell as i64).unwrap_or(0);
+            let around = mesh.neighbors().par_iter().enumerate();
+            let steps: Vec<[i16; 4]> = around.map(|(c, around)| around.map(|n| step(c, n))).collect();
+            let far = steps.par_iter().map(|steps| steps.iter().filter(|&&step| step == 0).count()).sum::<usize>();
+            (far.saturating_sub(self.boundary_faces()) <= self.cells() / FAR_SHARE).then_some(steps)
+        };
+        self.steps.get_or_init(find).as_deref()
     }
 
     pub(crate) fn spheres(&self, mesh: &TetMesh) -> &Spheres {
@@ -216,10 +242,10 @@ fn plane([a, b, c]: [Vec3; 3]) -> [f32; 4] {
     let [a, b, c]: [DVec3; 3] = [a, b, c].map(|p| p.as_dvec3());
     let (u, v) = (b - a, c - a);
     let normal = u.cross(v);
-    let length = normal.length();
-    if length <= NEAR_COLLINEAR * (u.length_squared() * v.length_squared()).sqrt() {
+    let square = normal.length_squared();
+    if square <= NEAR_COLLINEAR * NEAR_COLLINEAR * (u.length_squared() * v.length_squared()) {
         return [0.0; 4];
     }
-    let n = normal / length;
+    let n = normal * (1.0 / square.sqrt());
     [n.x as f32, n.y as f32, n.z as f32, -n.dot(a) as f32]
 }

@@ -1,16 +1,21 @@
 //! Arrows across gaps: where a ray of the picture leaves the mesh and enters it again (Cook, Max, Silva and Williams
 //! 2004, Image-space visibility ordering for cell projection volume rendering of unstructured data).
 //!
-//! The picture is worked through in bands of rows, each on its own. A band first counts the faces through which each
-//! ray enters the mesh; only tiles in which some ray does so twice are then looked at closely: each such ray's
-//! crossings of the boundary are sorted by depth and paired.
+//! The picture is worked through in bands of rows, each on its own. How often each ray enters the mesh is first found
+//! from the outline of the faces through which it may or, where some of them are beside or behind the eye, counted face by
+//! face. Only the rays that do so twice are then looked at closely: each one's crossings of the boundary are sorted by
+//! depth and paired.
 
+mod outline;
 mod walk;
+
+use std::ops::Range;
 
 use glam::Vec3;
 use rayon::prelude::*;
 use tetlux_mesh::TetMesh;
 
+use self::outline::{Line, Outline};
 use self::walk::{Findings, walk};
 use crate::Facts;
 use crate::coverage::{Depth, Pixels, Rays, Triangle};
@@ -50,20 +55,33 @@ pub(crate) struct Gaps {
     pub(crate) arrows: Vec<u64>,
     pub(crate) overlap_pixels: usize,
     pub(crate) overlap_cells: usize,
-    /// The faces of the boundary that rays may meet; nothing for the others.
-    faces: Vec<Option<Face>>,
-    /// Where each band's faces start in `listed`.
-    starts: Vec<usize>,
-    listed: Vec<u32>,
+    outline: Outline,
+    /// The faces of the boundary that rays may meet where they enter it more than once.
+    faces: Vec<Face>,
+    lists: Lists,
     bands: Vec<Band>,
     overlapping: Vec<u32>,
+}
+
+/// What each band has to look at: places in another list.
+#[derive(Debug, Default)]
+struct Lists {
+    /// Where each band's own start in `listed`.
+    starts: Vec<usize>,
+    listed: Vec<u32>,
 }
 
 /// What one band needs and finds.
 #[derive(Debug, Default)]
 struct Band {
-    /// Entries of each pixel, and exits if the eye is inside.
+    /// Entries of each pixel, and exits if the eye is inside; empty if there are no more than [`SIMPLE`] anywhere.
     counts: Vec<u8>,
+    /// Where rows cross the outline: pixels, and what is added to the winding from there on.
+    turns: Vec<(u32, i32)>,
+    /// Pixels about which the outline may wind more than [`SIMPLE`] times.
+    many: Vec<Range<u32>>,
+    /// How many such pixels there are.
+    pixels: u32,
     /// Tiles with a pixel of more than [`SIMPLE`] of them.
     tiles: Vec<bool>,
     /// The number, from 0, of every such pixel; of no meaning for others.
@@ -78,7 +96,6 @@ struct Band {
 /// What all bands share.
 struct View<'a> {
     rays: &'a Rays,
-    faces: &'a [Option<Face>],
     /// The eye is in or on a cell: rays leave before they enter.
     inside: bool,
     tolerance: f64,
@@ -87,48 +104,79 @@ struct View<'a> {
 impl Gaps {
     /// Finds the arrows; `codes` are those of the faces, `inside` says whether the eye is in or on a cell.
     pub(crate) fn find(&mut self, mesh: &TetMesh, facts: &Facts, codes: &[u8], rays: &Rays, inside: bool) {
-        (facts.interior..facts.owners.len())
-            .into_par_iter()
-            .with_min_len(256)
-            .map(|face| Face::new(mesh, facts, rays, face, codes[face]))
-            .collect_into_vec(&mut self.faces);
-        self.list_faces(rays);
-
+        let Gaps { arrows, outline, faces, lists, bands, overlapping, .. } = self;
         let [width, height] = rays.size();
-        let view = View { rays, faces: &self.faces, inside, tolerance: tolerance(facts, rays) };
-        let (starts, listed) = (&self.starts, &self.listed);
-        self.bands.resize_with(height.div_ceil(BAND) as usize, Band::default);
-        self.bands.par_iter_mut().enumerate().for_each(|(band, memory)| {
+        let count = if width == 0 { 0 } else { height.div_ceil(BAND) as usize };
+        bands.resize_with(count, Band::default);
+        let area = |band: usize| {
             let top = band as u32 * BAND;
-            let area = Pixels { columns: 0..width, rows: top..(top + BAND).min(height) };
-            memory.find(&view, &listed[starts[band]..starts[band + 1]], &area);
+            Pixels { columns: 0..width, rows: top..(top + BAND).min(height) }
+        };
+        let view = View { rays, inside, tolerance: tolerance(facts, rays) };
+
+        let boundary = (facts.interior..facts.owners.len()).into_par_iter().with_min_len(256);
+        faces.clear();
+        if !inside && outline.find(mesh, facts, codes, rays) {
+            lists.fill(count, outline.lines.iter().map(|line| line.rows(rays)));
+            bands.par_iter_mut().enumerate().for_each(|(band, memory)| {
+                memory.wind(rays, lists.of(band).map(|line| &outline.lines[line]), &area(band));
+            });
+            let corners = &facts.surface(mesh).corners;
+            faces.par_extend(boundary.filter_map(|face| {
+                let pixels = outline.pixels(rays, corners[face - facts.interior]);
+                let looked_at = bands[bands_of(&pixels.rows)].iter().any(|band| band.looks_at(&pixels));
+                if looked_at { Face::new(mesh, facts, face, codes[face], pixels) } else { None }
+            }));
+            lists.fill(count, faces.iter().map(|face| face.pixels.rows.clone()));
+        } else {
+            faces.par_extend(boundary.filter_map(|face| {
+                let pixels = rays.bounds(facts.vertices(mesh, face).1.map(|v| mesh.points()[v as usize]));
+                Face::new(mesh, facts, face, codes[face], pixels)
+            }));
+            lists.fill(count, faces.iter().map(|face| face.pixels.rows.clone()));
+            bands.par_iter_mut().enumerate().for_each(|(band, memory)| {
+                memory.count(&view, lists.of(band).map(|face| &faces[face]), &area(band));
+            });
+        }
+        bands.par_iter_mut().enumerate().for_each(|(band, memory)| {
+            memory.find(&view, lists.of(band).map(|face| &faces[face]), &area(band));
         });
 
-        self.arrows.clear();
-        self.overlapping.clear();
+        arrows.clear();
+        overlapping.clear();
         self.overlap_pixels = 0;
-        for band in &self.bands {
-            self.arrows.extend_from_slice(&band.findings.arrows);
-            self.overlapping.extend_from_slice(&band.findings.overlapping);
+        for band in bands {
+            arrows.extend_from_slice(&band.findings.arrows);
+            overlapping.extend_from_slice(&band.findings.overlapping);
             self.overlap_pixels += band.findings.overlap_pixels;
         }
-        self.arrows.sort_unstable();
-        self.arrows.dedup();
-        self.overlapping.sort_unstable();
-        self.overlapping.dedup();
-        self.overlap_cells = self.overlapping.len();
+        arrows.sort_unstable();
+        arrows.dedup();
+        overlapping.sort_unstable();
+        overlapping.dedup();
+        self.overlap_cells = overlapping.len();
     }
+}
 
-    /// Lists the faces of every band: a counting sort.
-    fn list_faces(&mut self, rays: &Rays) {
-        let bands = rays.size()[1].div_ceil(BAND) as usize;
-        let spans = |face: &Option<Face>| {
-            let rows = face.as_ref().map_or(0..0, |face| face.pixels.rows.clone());
-            (rows.start / BAND) as usize..rows.end.div_ceil(BAND) as usize
-        };
+/// The bands that rows are in.
+fn bands_of(rows: &Range<u32>) -> Range<usize> {
+    let end = rows.end.div_ceil(BAND) as usize;
+    ((rows.start / BAND) as usize).min(end)..end
+}
+
+/// The tiles that columns are in.
+fn tiles_of(columns: &Range<u32>) -> Range<usize> {
+    let end = columns.end.div_ceil(BAND) as usize;
+    ((columns.start / BAND) as usize).min(end)..end
+}
+
+impl Lists {
+    /// Lists for every band what has rows in it: a counting sort.
+    fn fill(&mut self, bands: usize, rows: impl Iterator<Item = Range<u32>> + Clone) {
+        let spans = rows.map(|rows| if rows.is_empty() { 0..0 } else { bands_of(&rows) });
         self.starts.clear();
         self.starts.resize(bands + 2, 0);
-        for band in self.faces.iter().flat_map(spans) {
+        for band in spans.clone().flatten() {
             self.starts[band + 2] += 1;
         }
         for band in 0..bands {
@@ -136,13 +184,17 @@ impl Gaps {
         }
         self.listed.clear();
         self.listed.resize(self.starts[bands + 1], 0);
-        for (i, face) in self.faces.iter().enumerate() {
-            for band in spans(face) {
+        for (i, span) in spans.enumerate() {
+            for band in span {
                 let place = &mut self.starts[band + 1];
                 self.listed[*place] = i as u32;
                 *place += 1;
             }
         }
+    }
+
+    fn of(&self, band: usize) -> impl Iterator<Item = usize> + Clone {
+        self.listed[self.starts[band]..self.starts[band + 1]].iter().map(|&place| place as usize)
     }
 }
 
@@ -157,16 +209,15 @@ fn tolerance(facts: &Facts, rays: &Rays) -> f64 {
 }
 
 impl Face {
-    fn new(mesh: &TetMesh, facts: &Facts, rays: &Rays, face: usize, code: u8) -> Option<Face> {
+    /// `None` if no ray passes through it.
+    fn new(mesh: &TetMesh, facts: &Facts, face: usize, code: u8, pixels: Pixels) -> Option<Face> {
         let entry = is_entry(code);
-        if !entry && !is_exit(code) {
+        if !entry && !is_exit(code) || pixels.rows.is_empty() || pixels.columns.is_empty() {
             return None;
         }
         let (cell, vertices) = facts.vertices(mesh, face);
         let [a, b, c] = vertices.map(|v| mesh.points()[v as usize]);
-        let pixels = rays.bounds([a, b, c]);
-        let met = !pixels.rows.is_empty() && !pixels.columns.is_empty();
-        met.then_some(Face { cell, entry, corners: if entry { [a, c, b] } else { [a, b, c] }, pixels })
+        Some(Face { cell, entry, corners: if entry { [a, c, b] } else { [a, b, c] }, pixels })
     }
 
     fn pixels_in(&self, area: &Pixels) -> Pixels {
@@ -176,16 +227,54 @@ impl Face {
 }
 
 impl Band {
-    fn find(&mut self, view: &View, listed: &[u32], area: &Pixels) {
+    /// Finds the pixels about which the outline winds more than [`SIMPLE`] times, or may.
+    fn wind<'a>(&mut self, rays: &Rays, lines: impl Iterator<Item = &'a Line>, area: &Pixels) {
+        let Band { turns, many, .. } = self;
+        turns.clear();
+        many.clear();
+        let width = area.columns.len() as u32;
+        let pixel = |row: u32, column: u32| (row - area.rows.start) * width + column;
+        for line in lines {
+            let rows = line.rows(rays);
+            let rows = rows.start.max(area.rows.start)..rows.end.min(area.rows.end);
+            line.trace(
+                rays,
+                rows,
+                |row, column, turn| turns.push((pixel(row, column), turn)),
+                |row, columns| many.push(pixel(row, columns.start)..pixel(row, columns.end)),
+            );
+        }
+        turns.sort_unstable();
+        let mut winding = 0;
+        for pair in turns.windows(2) {
+            winding += pair[0].1 * rays.handedness();
+            if winding > i32::from(SIMPLE) {
+                many.push(pair[0].0..pair[1].0);
+            }
+        }
+        self.counts.clear();
+        if !many.is_empty() {
+            self.counts.resize((width as usize) * area.rows.len(), 0);
+            for pixels in many {
+                self.counts[pixels.start as usize..pixels.end as usize].fill(SIMPLE + 1);
+            }
+        }
+        self.mark(width as usize);
+    }
+
+    /// Some pixel to be looked at is near these.
+    fn looks_at(&self, pixels: &Pixels) -> bool {
+        self.pixels > 0 && self.tiles[tiles_of(&pixels.columns)].contains(&true)
+    }
+
+    /// Finds what the rays of the pixels to be looked at meet.
+    fn find<'a>(&mut self, view: &View, faces: impl Iterator<Item = &'a Face>, area: &Pixels) {
         self.findings.clear();
-        let faces = listed.iter().filter_map(|&face| view.faces[face as usize].as_ref());
-        self.count(view, faces.clone(), area);
-        let pixels = self.mark(area.columns.len());
-        if pixels == 0 {
+        if self.pixels == 0 {
             return;
         }
         self.cross(view, faces, area);
-        self.sort(pixels);
+        self.sort();
         let mut start = 0;
         for &end in &self.ends {
             walk(&mut self.sorted[start..end as usize], view.tolerance, &mut self.findings);
@@ -206,10 +295,11 @@ impl Band {
                 }
             });
         }
+        self.mark(width);
     }
 
-    /// Marks the tiles to be looked at, and numbers their pixels of more than [`SIMPLE`] crossings; gives their number.
-    fn mark(&mut self, width: usize) -> u32 {
+    /// Marks the tiles to be looked at, and numbers their pixels of more than [`SIMPLE`] crossings.
+    fn mark(&mut self, width: usize) {
         let mut pixels = 0;
         self.tiles.clear();
         self.tiles.resize(width.div_ceil(BAND as usize), false);
@@ -227,21 +317,22 @@ impl Band {
                 }
             }
         }
-        pixels
+        self.pixels = pixels;
     }
 
     /// Lists the crossings of the pixels to be looked at.
     fn cross<'a>(&mut self, view: &View, faces: impl Iterator<Item = &'a Face>, area: &Pixels) {
         let width = area.columns.len();
         self.crossings.clear();
-        for face in faces {
-            let columns = &face.pixels.columns;
-            let tiles = (columns.start / BAND) as usize..columns.end.div_ceil(BAND) as usize;
-            if !self.tiles[tiles].contains(&true) {
+        for face in faces.filter(|face| self.tiles[tiles_of(&face.pixels.columns)].contains(&true)) {
+            let pixels = face.pixels_in(area);
+            let columns = pixels.columns.start as usize..pixels.columns.end as usize;
+            let row = |row: u32| &self.counts[(row - area.rows.start) as usize * width..][columns.clone()];
+            if !pixels.rows.clone().any(|y| row(y).iter().any(|&count| count > SIMPLE)) {
                 continue;
             }
             let depth = Depth::new(view.rays, face.corners);
-            Triangle::new(view.rays, face.corners).cover(view.rays, face.pixels_in(area), |row, columns| {
+            Triangle::new(view.rays, face.corners).cover(view.rays, pixels, |row, columns| {
                 let start = (row - area.rows.start) as usize * width;
                 for column in columns {
                     let pixel = start + column as usize;
@@ -256,9 +347,9 @@ impl Band {
     }
 
     /// Sorts the crossings by pixel, and each pixel's by depth.
-    fn sort(&mut self, pixels: u32) {
+    fn sort(&mut self) {
         self.ends.clear();
-        self.ends.resize(pixels as usize + 1, 0);
+        self.ends.resize(self.pixels as usize + 1, 0);
         for crossing in &self.crossings {
             self.ends[crossing.pixel as usize + 1] += 1;
         }

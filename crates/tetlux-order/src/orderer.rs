@@ -123,7 +123,7 @@ impl Orderer {
         if method == Method::Mpvonc || !gaps.arrows.is_empty() {
             timed(stages, "seeds", || farthest_entries(mesh, facts, codes, &eye, far, seeds));
         }
-        let graph = Graph { neighbors: mesh.neighbors(), gaps: &gaps.arrows };
+        let graph = Graph { neighbors: mesh.neighbors(), steps: facts.steps(mesh), gaps: &gaps.arrows };
         mark_gaps(&gaps.arrows, states);
         let sorted = !thorough.components && timed(stages, "search", || search.sort(graph, states, seeds, cells));
         if !sorted {

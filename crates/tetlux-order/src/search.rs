@@ -19,11 +19,27 @@ const BEGUN: u8 = 128;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Graph<'a> {
     pub(crate) neighbors: &'a [[u32; 4]],
+    /// The same as differences, in half the memory; zero where one is too far away.
+    pub(crate) steps: Option<&'a [[i16; 4]]>,
     /// Arrows across gaps, ascending: from, times 2^32, plus to.
     pub(crate) gaps: &'a [u64],
 }
 
 impl Graph<'_> {
+    /// The cell across a face.
+    #[inline]
+    fn across(&self, cell: u32, face: usize) -> Option<u32> {
+        self.neighbors[cell as usize].get(face).copied().filter(|&next| next != NONE)
+    }
+
+    #[inline]
+    fn step(&self, steps: &[[i16; 4]], cell: u32, face: usize) -> Option<u32> {
+        match steps[cell as usize].get(face) {
+            Some(&step) if step != 0 => Some(cell.wrapping_add_signed(i32::from(step))),
+            _ => self.across(cell, face),
+        }
+    }
+
     /// Places of the arrows across gaps that leave a cell.
     fn gaps_from(&self, cell: u32) -> Range<usize> {
         let start = self.gaps.partition_point(|&arrow| arrow >> 32 < u64::from(cell));
@@ -54,6 +70,20 @@ impl Search {
     /// `states` are the arrows of all cells, and [`GAPS`]; the search uses them up. Reverse postorder: a cell takes its
     /// place, from the back, when all that is behind it has its own (Tarjan 1976).
     pub(crate) fn sort(&mut self, graph: Graph, states: &mut [u8], seeds: &[u32], cells: &mut [u32]) -> bool {
+        match graph.steps {
+            Some(steps) => self.sort_by(graph, |cell, face| graph.step(steps, cell, face), states, seeds, cells),
+            None => self.sort_by(graph, |cell, face| graph.across(cell, face), states, seeds, cells),
+        }
+    }
+
+    fn sort_by(
+        &mut self,
+        graph: Graph,
+        across: impl Fn(u32, usize) -> Option<u32>,
+        states: &mut [u8],
+        seeds: &[u32],
+        cells: &mut [u32],
+    ) -> bool {
         self.stack.clear();
         self.gaps.clear();
         let mut end = cells.len();
@@ -64,7 +94,7 @@ impl Search {
             }
             state |= SEEN | OPEN;
             loop {
-                if let Some(next) = self.follow(graph, cell, &mut state) {
+                if let Some(next) = self.follow(graph, &across, cell, &mut state) {
                     let other = states[next as usize];
                     if other & SEEN == 0 {
                         states[cell as usize] = state;
@@ -115,7 +145,7 @@ impl Search {
                     time += 1;
                     self.pending.push(cell);
                 }
-                if let Some(next) = self.follow(graph, cell, &mut state) {
+                if let Some(next) = self.follow(graph, &|cell, face| graph.across(cell, face), cell, &mut state) {
                     let other = states[next as usize];
                     if other & SEEN == 0 {
                         states[cell as usize] = state;
@@ -156,11 +186,17 @@ impl Search {
 
     /// The cell that the next arrow leads to; `None` if no arrow is left.
     #[inline]
-    fn follow(&mut self, graph: Graph, cell: u32, state: &mut u8) -> Option<u32> {
+    fn follow(
+        &mut self,
+        graph: Graph,
+        across: &impl Fn(u32, usize) -> Option<u32>,
+        cell: u32,
+        state: &mut u8,
+    ) -> Option<u32> {
         if *state & ARROWS != 0 {
             let face = state.trailing_zeros() as usize;
             *state &= *state - 1;
-            return graph.neighbors[cell as usize].get(face).copied().filter(|&next| next != NONE);
+            return across(cell, face);
         }
         if *state & GAPS == 0 { None } else { self.follow_gap(graph, cell, state) }
     }

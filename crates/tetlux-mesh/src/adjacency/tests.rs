@@ -36,6 +36,18 @@ fn scrambled(counts: [usize; 3], split: Split, seed: u64, keep: f64) -> (Parts, 
     (parts, turned)
 }
 
+/// Sorts three indices; the second result is true if the sort is an odd permutation.
+fn sorted3(mut v: [u32; 3]) -> ([u32; 3], bool) {
+    let mut odd = false;
+    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+        if v[i] > v[j] {
+            v.swap(i, j);
+            odd = !odd;
+        }
+    }
+    (v, odd)
+}
+
 /// Cells by face, the vertices of a face in ascending order.
 fn cells_by_face(cells: &[[u32; 4]]) -> HashMap<[u32; 3], Vec<usize>> {
     let mut faces: HashMap<_, Vec<usize>> = HashMap::new();
@@ -72,16 +84,48 @@ proptest! {
 }
 
 #[test]
-fn sorting_three_knows_its_parity() {
-    for (v, odd) in [
-        ([1, 2, 3], false),
-        ([2, 3, 1], false),
-        ([3, 1, 2], false),
-        ([2, 1, 3], true),
-        ([1, 3, 2], true),
-        ([3, 2, 1], true),
-    ] {
-        assert_eq!(sorted3(v), ([1, 2, 3], odd));
+fn sorting_four_knows_the_parity_of_each_face() {
+    for code in 0..256u32 {
+        let cell = [0, 2, 4, 6].map(|shift| 10 + (code >> shift & 3));
+        if (0..4).any(|i| (0..i).any(|j| cell[i] == cell[j])) {
+            continue;
+        }
+        let (sorted, odd) = sorted4(&cell);
+        assert_eq!(sorted.map(|(v, _)| v), [10, 11, 12, 13]);
+        for (k, (v, place)) in sorted.into_iter().enumerate() {
+            assert_eq!(cell[place as usize], v);
+            // By definition: the face as it runs counter-clockwise seen from outside.
+            let (face, face_odd) = sorted3(FACES[place as usize].map(|i| cell[i]));
+            assert!(!face.contains(&v));
+            assert_eq!(odd ^ (k % 2 == 1), face_odd, "{cell:?}, opposite {v}");
+            assert_eq!(rest(&cell, place as usize), face[1..]);
+        }
+    }
+}
+
+#[test]
+fn long_lists_are_matched_as_short_ones_are() {
+    // Faces of one, two or three cells, in any order.
+    let mut random = SplitMix64::new(9);
+    for count in [5, FEW / 2, 3 * FEW] {
+        let mut bucket: Vec<HalfFace> = Vec::new();
+        let mut expected = [0, 0];
+        for i in 0..count as u32 {
+            let cells = random.next() % 3;
+            for cell in 0..=cells as u32 {
+                bucket.push(HalfFace { rest: [i / 7, i], side: (10 * i + cell) << 3 });
+            }
+            expected[0] += usize::from(cells == 1);
+            expected[1] += usize::from(cells == 2);
+        }
+        for i in (1..bucket.len()).rev() {
+            bucket.swap(i, (random.next() % (i as u64 + 1)) as usize);
+        }
+        let mut pairs = Vec::new();
+        let non_manifold = match_faces(&mut bucket, &mut pairs);
+        assert_eq!([pairs.len(), non_manifold], expected);
+        assert!(pairs.iter().all(|pair| pair.cells()[0] != pair.cells()[1]));
+        assert!(pairs.iter().all(|pair| pair.cells()[0] / 10 == pair.cells()[1] / 10));
     }
 }
 

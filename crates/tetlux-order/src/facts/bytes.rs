@@ -91,6 +91,8 @@ impl Facts {
                 non_manifold_faces: count(header.non_manifold_faces)?,
                 convex: header.convex == 1,
             },
+            surface: OnceLock::new(),
+            steps: OnceLock::new(),
             spheres: OnceLock::new(),
         };
         facts.fit(mesh).then_some(facts)

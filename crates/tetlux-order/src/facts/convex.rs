@@ -6,6 +6,7 @@ use glam::DVec3;
 use tetlux_mesh::TetMesh;
 
 use super::Facts;
+use super::surface::{Edge, Surface};
 use crate::exact::{Viewpoint, plane_sign};
 
 /// Certifies that the boundary is a closed surface without a concave edge, of the topology of a sphere, that winds about
@@ -18,36 +19,34 @@ pub(super) fn is_convex(mesh: &TetMesh, facts: &Facts) -> bool {
     if facts.known.folded_faces > 0 || facts.known.non_manifold_faces > 0 {
         return false;
     }
-    let faces: Vec<[u32; 3]> = (facts.interior..facts.owners.len()).map(|face| facts.vertices(mesh, face).1).collect();
-    has_no_concave_edge(mesh, &faces) && is_simple_sphere(mesh, &faces)
+    let surface = facts.surface(mesh);
+    let faces: Vec<[u32; 3]> =
+        surface.corners.iter().map(|c| c.map(|corner| surface.points[corner as usize])).collect();
+    has_no_concave_edge(mesh, surface, &faces) && is_simple_sphere(mesh, &faces)
 }
 
 /// Every edge of the surface joins two faces, neither of which has the other's third vertex before it.
-fn has_no_concave_edge(mesh: &TetMesh, faces: &[[u32; 3]]) -> bool {
-    let mut edges: Vec<([u32; 2], u32, u32)> = Vec::with_capacity(3 * faces.len());
-    for (face, &[a, b, c]) in faces.iter().enumerate() {
-        for (a, b, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
-            edges.push(([a.min(b), a.max(b)], opposite, face as u32));
-        }
-    }
-    edges.sort_unstable();
+fn has_no_concave_edge(mesh: &TetMesh, surface: &Surface, faces: &[[u32; 3]]) -> bool {
     let at = |v: u32| mesh.points()[v as usize];
     let normal = |face: u32| {
         let [a, b, c] = faces[face as usize].map(|v| at(v).as_dvec3());
         (b - a).cross(c - a)
     };
-    edges.chunk_by(|a, b| a.0 == b.0).all(|pair| match *pair {
-        [(_, _, first), (_, apex, second)] => {
-            let [a, b, c] = faces[first as usize].map(at);
-            match plane_sign(a, b, c, &Viewpoint::new(at(apex).as_dvec3(), true)).value {
-                -1 => true,
-                // In one plane: side by side, not one upon the other.
-                0 => normal(first).dot(normal(second)) > 0.0,
-                _ => false,
-            }
+    let bends_back = |edge: &Edge| {
+        let [first, second] = edge.faces;
+        let ends = edge.ends.map(|end| surface.points[end as usize]);
+        let Some(apex) = faces[second as usize].into_iter().find(|v| !ends.contains(v)) else { return false };
+        let [a, b, c] = faces[first as usize].map(at);
+        match plane_sign(a, b, c, &Viewpoint::new(at(apex).as_dvec3(), true)).value {
+            -1 => true,
+            // In one plane: side by side, not one upon the other.
+            0 => normal(first).dot(normal(second)) > 0.0,
+            _ => false,
         }
-        _ => false,
-    })
+    };
+    let edges = &surface.edges;
+    let joins_two = 2 * edges.len() == 3 * faces.len() && edges.windows(2).all(|pair| pair[0].ends != pair[1].ends);
+    joins_two && edges.iter().all(bends_back)
 }
 
 /// Euler's characteristic is 2, and every vertex has its faces round it once.

@@ -66,6 +66,51 @@ fn a_cell_takes_little_memory() {
 }
 
 #[test]
+fn edges_of_the_boundary_join_faces_that_run_opposite_ways() {
+    let pieces = [block([2; 3], [0.0; 3], [1.0; 3]), block([1; 3], [1.0, 1.0, 0.0], [2.0, 2.0, 1.0])];
+    let mut touching = pieces[0].clone();
+    touching.append(&pieces[1]);
+    for parts in [pieces[0].clone(), touching, sphere_shell([8, 6, 2], Split::Six, DVec3::ZERO, [1.0, 2.0])] {
+        let mesh = assemble(&parts);
+        let facts = Facts::new(&mesh);
+        let surface = facts.surface(&mesh);
+        assert_eq!(surface.corners.len(), facts.boundary_faces());
+        for (i, corners) in surface.corners.iter().enumerate() {
+            let points = corners.map(|corner| surface.points[corner as usize]);
+            assert_eq!(points, facts.vertices(&mesh, facts.interior + i).1);
+        }
+        // Every side of every face once, from one of its ends to the other.
+        let mut sides: Vec<(u32, [u32; 2])> = Vec::new();
+        for edge in &surface.edges {
+            let [from, to] = edge.ends;
+            sides.extend([(edge.faces[0], [from, to]), (edge.faces[1], [to, from])]);
+        }
+        sides.sort_unstable();
+        let of_face =
+            |(i, &[a, b, c]): (usize, &[u32; 3])| [(i as u32, [a, b]), (i as u32, [b, c]), (i as u32, [c, a])];
+        let mut expected: Vec<_> = surface.corners.iter().enumerate().flat_map(of_face).collect();
+        expected.sort_unstable();
+        assert_eq!(sides, expected);
+    }
+}
+
+#[test]
+fn steps_lead_to_the_neighbors() {
+    let mesh = assemble(&block([6, 5, 4], [0.0; 3], [1.0; 3]));
+    let facts = Facts::new(&mesh);
+    let steps = facts.steps(&mesh).unwrap();
+    for (c, (steps, around)) in steps.iter().zip(mesh.neighbors()).enumerate() {
+        for (&step, &neighbor) in steps.iter().zip(around) {
+            assert_eq!(step == 0, neighbor == NONE);
+            assert!(step == 0 || c as i64 + i64::from(step) == i64::from(neighbor));
+        }
+    }
+    // Two layers of more cells than a step can pass over: too many are far from their neighbours.
+    let wide = assemble(&block([80, 80, 2], [0.0; 3], [1.0; 3]));
+    assert!(Facts::new(&wide).steps(&wide).is_none());
+}
+
+#[test]
 fn what_is_convex_is_certified() {
     for counts in [[1, 1, 1], [4, 3, 2], [7, 1, 1]] {
         for split in [Split::Five, Split::Six] {
