@@ -169,6 +169,7 @@ fn opaque(hidden: f64, pieces: &[Piece], look: Option<&Look>, backdrop: Option<&
 pub struct Renderer {
     gpu: Option<gpu::Gpu>,
     orderer: Mutex<Orderer>,
+    room: tiles::Room,
 }
 
 impl Default for Renderer {
@@ -180,7 +181,7 @@ impl Default for Renderer {
 impl Renderer {
     /// Looks for a graphics adapter, hardware before software; opens none.
     pub fn new() -> Renderer {
-        Renderer { gpu: gpu::Gpu::find(), orderer: Mutex::default() }
+        Renderer { gpu: gpu::Gpu::find(), orderer: Mutex::default(), room: tiles::Room::default() }
     }
 
     /// The adapter there is, for the plan.
@@ -305,7 +306,7 @@ impl Renderer {
         let Drawn { mut pixels, resources, spent } = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
-                let (pixels, pieces) = tiles::draw(&job, &mut stages);
+                let (pixels, pieces) = tiles::draw(&job, &self.room, &mut stages);
                 let resources = Resources { cells: cells.len(), ..Resources::default() };
                 Drawn { pixels, resources, spent: job.look.is_some().then_some(pieces) }
             }

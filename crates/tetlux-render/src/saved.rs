@@ -5,7 +5,7 @@ use tetlux_scene::{Backend, Fate, Plan, Scene, Skip, SkipLine};
 use tetlux_tables::TableSpec;
 
 use crate::gpu::variant::Variant;
-use crate::tiles::CELL_BYTES;
+use crate::tiles;
 
 /// Bytes of memory, of the device's where the graphics back end draws, that a line of the plan saves.
 pub fn bytes_saved(scene: &Scene, mesh: &TetMesh, plan: &Plan, line: &SkipLine) -> u64 {
@@ -15,10 +15,19 @@ pub fn bytes_saved(scene: &Scene, mesh: &TetMesh, plan: &Plan, line: &SkipLine) 
     let gpu = plan.backend == Backend::Gpu;
     let on_cells = scene.scalar.location == Location::Cell;
     let of_mesh = |points: u64, cells: u64| points * mesh.points().len() as u64 + cells * mesh.cells().len() as u64;
-    // Projected and listed in the order.
-    let cell = if gpu { Variant::new(plan, on_cells, None, false).geometry().bytes + 4 } else { CELL_BYTES + 4 };
+    // Projected, where the CPU back end does so many at a time, and listed in the order.
+    let projected = |cells: usize| {
+        let cells = cells as u64;
+        if gpu {
+            cells * Variant::new(plan, on_cells, None, false).geometry().bytes
+        } else {
+            tiles::bytes_set_up(cells)
+        }
+    };
     match line.skip {
-        Skip::Transparent | Skip::Faint | Skip::Outside => line.cells as u64 * cell,
+        Skip::Transparent | Skip::Faint | Skip::Outside => {
+            projected(plan.cells.len() + line.cells) - projected(plan.cells.len()) + 4 * line.cells as u64
+        }
         Skip::Order => of_mesh(0, 4),
         // Three coordinates in double precision.
         Skip::Gradients => of_mesh(24, 0),

@@ -1,28 +1,34 @@
 //! The CPU back end: tile-binned cell projection.
 //!
-//! Cells are set up in double precision ([`record`]), binned into tiles of pixels in their order ([`bins`]), and every
-//! tile walks its cells front to back with a vector of pixels at a time ([`walk`]): a block's rays are met with a
-//! cell's planes ([`block`]), and the segments are integrated exactly ([`ramp`]). Where cells have no order a tile
-//! sorts its fragments by depth. A block whose pixels are opaque is left alone. Where a scene looks at more than one
-//! scalar, its further fields are set up beside the records ([`further`]) and segments are shaded one by one
-//! ([`crate::look`]).
+//! Cells are set up in double precision ([`set_up`], [`record`]), binned into tiles of pixels in their order ([`bins`]), and
+//! every tile of the picture ([`canvas`]) walks its cells front to back, some at a time ([`walk`]): in which blocks of
+//! pixels they may be seen ([`cover`]), and for each block, a vector of pixels, where its rays are inside a cell
+//! ([`block`]) and the exact integral there ([`ramp`]). Where cells have no order a tile sorts its fragments by depth
+//! ([`sorted`]). A block whose pixels are opaque is left alone. Where a scene looks at more than one scalar, its further
+//! fields are set up beside the records ([`further`]) and segments are shaded one by one ([`lanes`], [`crate::look`]).
 //!
 //! The instruction set is chosen at run time. A picture is the same bit for bit every time and on any number of
 //! threads; on other instruction sets it may differ by roundings, where multiplications and additions are not fused.
 
 mod bins;
 mod block;
+mod canvas;
+mod cover;
 mod further;
+mod lanes;
 mod ramp;
 mod record;
+mod set_up;
+mod sorted;
 #[cfg(test)]
 mod tests;
 mod vector;
 mod walk;
 
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd, SimdBase, dispatch};
 use rayon::prelude::*;
 use tetlux_scene::Skip;
 
@@ -30,23 +36,39 @@ use crate::Job;
 use crate::look::Spent;
 use crate::stage::Stages;
 use bins::{Bins, TILE};
+use canvas::{Canvas, Tile};
 use ramp::Ramp;
-use record::{CHUNK, Chunk, SetUp};
+use record::{CHUNK, Chunk};
+use set_up::SetUp;
 use walk::{Light, Walk};
 
-/// Bytes of a cell that is set up: its record, and the tiles of its box.
-pub(crate) const CELL_BYTES: u64 = (size_of::<Chunk>() / CHUNK) as u64;
+/// Cells that are set up at a time: their records, 136 bytes a cell, are still in a cache when they are drawn, and their
+/// memory is taken once.
+const BATCH: usize = 1 << 16;
 
-/// Cells that are set up at a time: bounds the memory of their records, 136 bytes a cell.
-const BATCH: usize = 1 << 20;
+/// Bytes of memory that a picture of so many cells takes for them while they are set up.
+pub(crate) fn bytes_set_up(cells: u64) -> u64 {
+    cells.min(BATCH as u64) * (size_of::<Chunk>() / CHUNK) as u64
+}
+
+/// The memory of cells that are set up, kept from picture to picture: fresh memory costs as much as its contents.
+#[derive(Debug, Default)]
+pub(crate) struct Room(Mutex<Vec<Chunk>>);
 
 /// Draws a picture: premultiplied pixels, top row first; and what segments took that were shaded one by one.
-pub(crate) fn draw(job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
-    draw_on(Level::new(), job, stages)
+pub(crate) fn draw(job: &Job, room: &Room, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
+    // Another picture that is drawn at the same time finds none, and makes its own.
+    let lock = || room.0.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut chunks = std::mem::take(&mut *lock());
+    let drawn = draw_on(Level::new(), job, &mut chunks, stages);
+    chunks.truncate(BATCH / CHUNK);
+    chunks.shrink_to_fit();
+    *lock() = chunks;
+    drawn
 }
 
 /// The same with a given instruction set.
-fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
+fn draw_on(level: Level, job: &Job, chunks: &mut Vec<Chunk>, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     let eye = &job.eye;
     let all_weights = job.kept.contains(Skip::Weights);
     let ramps: Vec<Ramp> = job.pieces.iter().map(|piece| Ramp::new(piece, all_weights)).collect();
@@ -62,50 +84,51 @@ fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spen
         look: job.look.as_ref(),
         further: &[],
     };
-    let points = stages.run("project", || record::points(job.mesh, job.scalar, eye));
+    let points = stages.run("project", || set_up::points(job.mesh, job.scalar, eye));
     let set_up =
         SetUp { mesh: job.mesh, points: &points, eye, pieces: job.pieces, cut_all: light.cut_all, size: job.size };
     let columns = bins::tiles(job.size)[0] as usize;
     let fields = job.look.as_ref().map_or(&[][..], |look| &look.further);
-    let mut pixels = vec![[0.0; 4]; job.size[0] as usize * job.size[1] as usize];
+    let mut canvas = Canvas::new(job.size);
     let mut spent = Spent::default();
     for batch in batches(job.order.len(), job.groups) {
         let cells = &job.order[batch.clone()];
-        let (chunks, further) = stages.run("set up", || {
-            let chunks = set_up.chunks(level, cells);
-            let further = further::further(&set_up, fields, cells, &chunks);
-            (chunks, further)
+        let count = cells.len().div_ceil(CHUNK);
+        let further = stages.run("set up", || {
+            if chunks.len() < count {
+                chunks.resize(count, Chunk::default());
+            }
+            set_up.chunks(level, cells, &mut chunks[..count]);
+            further::further(&set_up, fields, cells, chunks)
         });
+        let chunks = &chunks[..count];
         let light = Light { further: &further, ..light };
-        let bins = stages.run("bin", || Bins::new(&chunks, job.size));
+        let bins = stages.run("bin", || Bins::new(chunks, job.size));
         let groups = groups_in(job.groups, &batch);
         let drawn = stages.run("draw", || {
-            rows_of_tiles(&mut pixels, job.size).into_par_iter().enumerate().map(|(index, mut rows)| {
+            let draw = |(index, tile): (usize, &mut Tile)| {
                 let origin = [index % columns, index / columns].map(|i| i as u32 * TILE);
                 let cells = bins.of(index);
-                if eye.orthographic {
-                    dispatch!(level, simd => draw_tile::<_, true>(simd, &light, origin, &chunks, cells, &groups, &mut rows))
+                if cells.is_empty() {
+                    Spent::default()
+                } else if eye.orthographic {
+                    dispatch!(level, simd => draw_tile::<_, true>(simd, &light, origin, chunks, cells, &groups, tile))
                 } else {
-                    dispatch!(level, simd => draw_tile::<_, false>(simd, &light, origin, &chunks, cells, &groups, &mut rows))
+                    dispatch!(level, simd => draw_tile::<_, false>(simd, &light, origin, chunks, cells, &groups, tile))
                 }
-            }).reduce(Spent::default, Spent::and)
+            };
+            canvas.tiles().enumerate().map(draw).reduce(Spent::default, Spent::and)
         });
         spent = spent.and(drawn);
     }
-    (pixels, spent)
+    let lanes = dispatch!(level, simd => lanes(simd));
+    (stages.run("draw", || canvas.into_pixels(lanes)), spent)
 }
 
-/// For each tile its rows of the picture.
-fn rows_of_tiles(pixels: &mut [[f32; 4]], size: [u32; 2]) -> Vec<Vec<&mut [[f32; 4]]>> {
-    let [columns, rows] = bins::tiles(size).map(|n| n as usize);
-    let mut tiles: Vec<Vec<&mut [[f32; 4]]>> = Vec::new();
-    tiles.resize_with(columns * rows, || Vec::with_capacity(TILE as usize));
-    for (y, row) in pixels.chunks_mut(size[0] as usize).enumerate() {
-        for (part, tile) in row.chunks_mut(TILE as usize).zip(&mut tiles[y / TILE as usize * columns..]) {
-            tile.push(part);
-        }
-    }
-    tiles
+/// Lanes of a vector.
+#[inline(always)]
+fn lanes<S: Simd>(_: S) -> usize {
+    S::f32s::LEN
 }
 
 /// Ranges of the order of about [`BATCH`] cells that cut no group.
@@ -138,9 +161,9 @@ fn draw_tile<S: Simd, const ORTHOGRAPHIC: bool>(
     chunks: &[Chunk],
     cells: &[u32],
     groups: &[Range<u32>],
-    rows: &mut [&mut [[f32; 4]]],
+    tile: &mut Tile,
 ) -> Spent {
-    let mut walk = Walk::new(simd, light, origin, rows);
+    let mut walk = Walk::new(simd, light, origin, tile);
     let mut rest = cells;
     let mut groups = groups;
     while let [cell, ..] = rest
@@ -161,6 +184,5 @@ fn draw_tile<S: Simd, const ORTHOGRAPHIC: bool>(
             rest = after;
         }
     }
-    walk.finish(rows);
     walk.spent
 }

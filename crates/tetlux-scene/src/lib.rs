@@ -38,6 +38,7 @@ mod planner;
 mod reason;
 mod skip;
 mod surface;
+mod verdict;
 mod view;
 
 pub use budget::{COLOR_SHARE, COLOR_SHARE_LIT, LIGHT_SHARE, Stated, Term};

@@ -9,6 +9,7 @@ use tetlux_optics::Classification;
 use tetlux_optics::widget::Rectangle;
 
 use crate::budget::Measures;
+use crate::verdict::{Verdict, Verdicts};
 use crate::{CellBoxes, Device, Plan, Scene, SceneError, Skip, SkipSet, View};
 
 /// Makes plans for pictures of one mesh. What depends on the field alone, or on the camera alone, is found again only when
@@ -159,43 +160,47 @@ impl<'a> Planner<'a> {
         let touched = self.touched(scene, first, second);
         let clear = |&v: &u32| colors.is_none_or(|colors| colors.get(v as usize).is_none_or(|color| color[3] <= 0.0));
         let [drop_transparent, drop_outside] = [Skip::Transparent, Skip::Outside].map(|skip| !kept.contains(skip));
-        let within = |intervals: &[[f64; 2]], [low, high]: [f64; 2]| {
-            let after = intervals.partition_point(|interval| interval[0] <= low);
-            after > 0 && high <= intervals[after - 1][1]
+        let transparent = |cell: usize| match &touched {
+            _ if colors.is_some() => self.mesh.cells()[cell].iter().all(clear),
+            Some(touched) => !touched[cell],
+            None => {
+                let (s, g) = (first.cells[cell], second.map_or([0.0; 2], |second| second.cells[cell]));
+                let missing = s[0].is_nan() || g[0].is_nan();
+                missing || !scene.classification.is_visible_over(&Rectangle { s, g })
+            }
         };
-        let decide = |cell: usize, skips: &mut Skips| -> bool {
-            let s = first.cells[cell];
-            let g = second.map_or([0.0; 2], |second| second.cells[cell]);
-            let missing = s[0].is_nan() || g[0].is_nan();
-            let transparent = |threshold: usize| match (&dark, &touched) {
-                _ if colors.is_some() => self.mesh.cells()[cell].iter().all(clear),
-                (Some(dark), _) => within(&dark[threshold], s),
-                (None, Some(touched)) => !touched[cell],
-                (None, None) => !scene.classification.is_visible_over(&Rectangle { s, g }),
-            };
-            let counted = if missing {
-                &mut skips.no_data
-            } else if drop_transparent && transparent(0) {
-                &mut skips.transparent
-            } else if drop_outside && seen.cells[cell] == Sight::Outside {
-                &mut skips.outside
-            } else if seen.cells[cell] == Sight::Flat {
-                &mut skips.flat
-            } else if faint > 0.0 && transparent(1) && !transparent(0) {
-                &mut skips.faint
-            } else {
-                return true;
-            };
-            *counted += 1;
-            false
+        let dark = dark.as_ref().filter(|_| colors.is_none());
+        // From the weakest reason to the strongest.
+        let decide = |start: usize, verdicts: &mut Verdicts| {
+            let cells = start..start + verdicts.0.len();
+            let (s, seen) = (&first.cells[cells.clone()], &seen.cells[cells.clone()]);
+            if let (Some([dark, faint]), true) = (dark, faint > 0.0) {
+                verdicts.mark_within(s, faint, Verdict::Faint);
+                verdicts.mark_within(s, dark, Verdict::Drawn);
+            }
+            verdicts.mark(Verdict::Flat, |i| seen[i] == Sight::Flat);
+            if drop_outside {
+                verdicts.mark(Verdict::Outside, |i| seen[i] == Sight::Outside);
+            }
+            match dark {
+                _ if !drop_transparent => {}
+                Some([dark, _]) => verdicts.mark_within(s, dark, Verdict::Transparent),
+                None => verdicts.mark(Verdict::Transparent, |i| transparent(start + i)),
+            }
+            verdicts.mark(Verdict::NoData, |i| s[i][0].is_nan());
+            if let Some(second) = second {
+                let g = &second.cells[cells];
+                verdicts.mark(Verdict::NoData, |i| g[i][0].is_nan());
+            }
         };
         let count = self.mesh.cells().len();
         let shares: Vec<(Vec<u32>, Skips)> = (0..count.div_ceil(SHARE))
             .into_par_iter()
             .map(|share| {
-                let mut skips = Skips::default();
-                let cells = share * SHARE..((share + 1) * SHARE).min(count);
-                (cells.filter(|&cell| decide(cell, &mut skips)).map(|cell| cell as u32).collect(), skips)
+                let start = share * SHARE;
+                let mut verdicts = Verdicts::new(SHARE.min(count - start));
+                decide(start, &mut verdicts);
+                (verdicts.drawn(start), verdicts.skips())
             })
             .collect();
         let skips = shares.iter().fold(Skips::default(), |sum, (_, skips)| sum.and(*skips));

@@ -7,6 +7,7 @@ use tetlux_scene::{
 };
 
 use super::*;
+use crate::tiles::Room;
 use crate::{Frame, Model, Renderer};
 
 fn mesh() -> TetMesh {
@@ -31,7 +32,7 @@ fn scene(mesh: &TetMesh, method: Method) -> Scene {
 fn restricted(features: wgpu::Features, restrict: impl FnOnce(&mut wgpu::Limits)) -> Renderer {
     let Gpu { adapter, mut limits, .. } = Gpu::find().unwrap();
     restrict(&mut limits);
-    Renderer { gpu: Some(Gpu::new(adapter, features, limits)), orderer: Mutex::default() }
+    Renderer { gpu: Some(Gpu::new(adapter, features, limits)), orderer: Mutex::default(), room: Room::default() }
 }
 
 fn planned(renderer: &Renderer, mesh: &TetMesh, method: Method) -> (Scene, Plan) {

@@ -1,6 +1,6 @@
 //! Rays of a block of pixels through a cell.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask};
+use fearless_simd::{Simd, SimdBase, SimdFloat};
 
 use super::record::Record;
 
@@ -26,16 +26,14 @@ fn linear<S: Simd>(simd: S, [dx, dy, c]: [f32; 3], x: S::f32s, y: S::f32s) -> S:
 
 /// The parts of rays inside a cell.
 pub(crate) struct Segments<S: Simd> {
-    /// Scalar at the front and at the back end, less the cell's lowest.
-    pub(crate) front: S::f32s,
-    pub(crate) back: S::f32s,
+    /// The scalar in the middle, less the cell's lowest, and by how much it rises from there to the back end.
+    pub(crate) scalar: S::f32s,
+    pub(crate) rise: S::f32s,
     /// In device units; 0 where the ray misses the cell.
     pub(crate) length: S::f32s,
-    /// Depth of the middle from the mesh's origin.
-    pub(crate) depth: S::f32s,
-    /// The middle's depth from `z_ref` and the extent in depth, both over `z_ref` in perspective.
+    /// The middle's depth from `z_ref` and half the extent in depth, both over `z_ref` in perspective.
     pub(crate) middle: S::f32s,
-    pub(crate) extent: S::f32s,
+    pub(crate) half: S::f32s,
 }
 
 /// Where the rays of a block's pixels end, if anything in the volume ends rays.
@@ -47,67 +45,73 @@ pub(crate) struct Ends<S: Simd> {
     pub(crate) origin: f32,
 }
 
-/// The segments of the rays through some pixels, counted from the middle of the cell's box, `stretch` the rays' length for a depth
-/// of 1, `ends` where they end; `None` if all miss the cell.
+/// w where the rays through some pixels, counted from the middle of the cell's box, enter a cell and leave it: the first
+/// is not above the second where they miss it. `ends` is where they end.
+#[inline(always)]
+pub(crate) fn crossing<S: Simd, const ORTHOGRAPHIC: bool>(
+    simd: S,
+    record: &Record,
+    (x, y): (S::f32s, S::f32s),
+    ends: Option<Ends<S>>,
+) -> (S::f32s, S::f32s) {
+    let p = linear(simd, record.planes[0], x, y);
+    let q = linear(simd, record.planes[1], x, y);
+    let r = linear(simd, record.planes[2], x, y);
+    let s = linear(simd, record.planes[3], x, y);
+    // Without branches, which no processor could foretell; and sums where comparisons would do, as units for those are
+    // busy with the planes.
+    let [[back_q, front_q], [back_r, front_r]] = record.beyond;
+    let nearest = S::f32s::splat(simd, record.nearest);
+    let mut front = p.min(nearest).min((q + front_q).min(r + front_r));
+    let mut back = s.max(0.0).max((q + back_q).max(r + back_r));
+    if record.fronts == 0 {
+        (front, back) = (nearest, back.max(p));
+    } else if record.fronts == 4 {
+        (front, back) = (front.min(s), S::f32s::splat(simd, 0.0));
+    }
+    if let Some(Ends { levels, origin }) = ends {
+        let before = S::f32s::splat(simd, record.level) - levels;
+        back = back.max(if ORTHOGRAPHIC { before } else { before / (levels + origin) });
+    }
+    (front, back)
+}
+
+/// The segments of rays that enter a cell and leave it at some w ([`crossing`]); `stretch` is the rays' length for a depth
+/// of 1.
 #[inline(always)]
 pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(
     simd: S,
     record: &Record,
     (x, y): (S::f32s, S::f32s),
     stretch: S::f32s,
-    ends: Option<Ends<S>>,
-) -> Option<Segments<S>> {
-    let p = linear(simd, record.planes[0], x, y);
-    let q = linear(simd, record.planes[1], x, y);
-    let r = linear(simd, record.planes[2], x, y);
-    let s = linear(simd, record.planes[3], x, y);
-    let mut front = S::f32s::splat(simd, record.nearest);
-    let mut back = S::f32s::splat(simd, 0.0);
-    match record.fronts {
-        1 => {
-            front = front.min(p);
-            back = back.max(q).max(r.max(s));
-        }
-        2 => {
-            front = front.min(p.min(q));
-            back = back.max(r.max(s));
-        }
-        3 => {
-            front = front.min(p).min(q.min(r));
-            back = back.max(s);
-        }
-        0 => back = back.max(p).max(q).max(r.max(s)),
-        _ => front = front.min(p).min(q).min(r.min(s)),
-    }
-    if let Some(Ends { levels, origin }) = ends {
-        let before = S::f32s::splat(simd, record.level) - levels;
-        back = back.max(if ORTHOGRAPHIC { before } else { before / (levels + origin) });
-    }
-    if !front.simd_gt(back).any_true() {
-        return None;
-    }
+    (front, back): (S::f32s, S::f32s),
+) -> Segments<S> {
     // Where the ray misses the cell too, both between the farthest vertex and the nearest.
     let back = back.min(record.nearest);
     let front = front.max(back);
     let extent = front - back;
-    let half = S::f32s::splat(simd, 0.5);
     let scalar = linear(simd, record.scalar, x, y);
-    // The middle's depth from z_ref, the extent in depth, both over z_ref in perspective; the gradient likewise.
-    let (middle, extent, gradient) = if ORTHOGRAPHIC {
-        ((front + back) * half, extent, S::f32s::splat(simd, record.along))
+    // In perspective all over z_ref, the gradient times it.
+    let (middle, half, gradient) = if ORTHOGRAPHIC {
+        ((front + back) * 0.5, extent * 0.5, S::f32s::splat(simd, record.along))
     } else {
-        let inverse = S::f32s::splat(simd, 1.0) / ((front + 1.0) * (back + 1.0));
-        ((front + back).mul_add(half, front * back) * inverse, extent * inverse, scalar + record.along)
+        let beyond = back + 1.0;
+        let half = S::f32s::splat(simd, 0.5) / front.mul_add(beyond, beyond);
+        ((front * back).mul_add(2.0, front + back) * half, extent * half, scalar + record.along)
     };
-    let rise = gradient * extent * half;
-    let middle_scalar = scalar - gradient * middle;
-    let scale = if ORTHOGRAPHIC { 1.0 } else { record.depth };
-    Some(Segments {
-        front: (middle_scalar - rise).max(0.0).min(record.range),
-        back: (middle_scalar + rise).max(0.0).min(record.range),
-        length: extent * stretch * scale,
-        depth: S::f32s::splat(simd, record.level) - middle * scale,
-        middle,
-        extent,
-    })
+    // Both ends between the cell's lowest scalar and its highest.
+    let rise = gradient * half;
+    let scalar = (-gradient).mul_add(middle, scalar).max(0.0).min(record.range);
+    let limit = scalar.min(S::f32s::splat(simd, record.range) - scalar);
+    let length = half * stretch * if ORTHOGRAPHIC { 2.0 } else { 2.0 * record.depth };
+    Segments { scalar, rise: rise.min(limit).max(-limit), length, middle, half }
+}
+
+impl<S: Simd> Segments<S> {
+    /// Depths of the middles from the mesh's origin.
+    #[inline(always)]
+    pub(crate) fn depth<const ORTHOGRAPHIC: bool>(&self, simd: S, record: &Record) -> S::f32s {
+        let scale = if ORTHOGRAPHIC { 1.0 } else { record.depth };
+        S::f32s::splat(simd, record.level) - self.middle * scale
+    }
 }

@@ -4,8 +4,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::Location;
 
-use super::record::{CHUNK, Record, SetUp, at};
-use super::record::{Chunk, STEEPEST};
+use super::record::{CHUNK, Chunk, Record, at};
+use super::set_up::{STEEPEST, SetUp};
 use crate::device_mesh::NEGATIVE;
 use crate::look::Further;
 
@@ -51,7 +51,7 @@ pub(crate) fn further(set_up: &SetUp, fields: &[Further], cells: &[u32], chunks:
         for (i, linears) in all.chunks_mut(fields.len()).enumerate() {
             let position = chunk * CHUNK + i;
             let record = at(chunks, position as u32);
-            if record.first[0] < record.end[0] {
+            if record.is_seen() {
                 in_cell(set_up, fields, cells[position], record, linears);
             }
         }

@@ -85,7 +85,7 @@ impl Drawing {
             kept: SkipSet::default(),
             size: self.view.size,
         };
-        draw_on(level, &job, &mut Stages::default()).0
+        draw_on(level, &job, &mut Vec::new(), &mut Stages::default()).0
     }
 
     /// Every pixel sorted.

@@ -18,11 +18,11 @@ fn one(level: Level, ramps: &[Ramp], model: Weights, [front, back, length]: [f32
 fn segment<S: Simd>(simd: S, ramps: &[Ramp], model: Weights, [front, back, length]: [f32; 3]) -> [f32; 4] {
     let splat = |x: f32| S::f32s::splat(simd, x);
     let mut pixels = [splat(0.0); 4];
+    let (middle, rise) = (0.5 * (front + back), 0.5 * (back - front));
     if let [ramp] = ramps {
-        let low = ramp.ends[0];
-        add_segment(simd, ramp, model, splat(front - low), splat(back - low), splat(length), &mut pixels);
+        add_segment(simd, ramp, model, splat(middle - ramp.ends[0]), splat(rise), splat(length), &mut pixels);
     } else {
-        add_cut_segment(simd, ramps, 0.0, model, splat(front), splat(back), splat(length), &mut pixels);
+        add_cut_segment(simd, ramps, 0.0, model, splat(middle), splat(rise), splat(length), &mut pixels);
     }
     pixels.map(|p| p[S::f32s::LEN - 1])
 }
