@@ -41,12 +41,7 @@ pub(crate) const CELL_BYTES: u64 = (size_of::<Chunk>() / CHUNK) as u64;
 const BATCH: usize = 1 << 20;
 
 /// Draws a picture: premultiplied pixels, top row first; and what segments took that were shaded one by one.
-pub(crate) fn draw(job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
-    draw_on(Level::new(), job, stages)
-}
-
-/// The same with a given instruction set.
-fn draw_on(level: Level, job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
+pub(crate) fn draw(level: Level, job: &Job, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     let eye = &job.eye;
     let all_weights = job.kept.contains(Skip::Weights);
     let ramps: Vec<Ramp> = job.pieces.iter().map(|piece| Ramp::new(piece, all_weights)).collect();
