@@ -75,7 +75,7 @@ pub(crate) struct Args {
     /// Picture size in pixels [default: 800x800; of papers theirs, or a quarter of each side on a software adapter]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<[u32; 2]>,
-    /// Timed frames of each way, in turn with the others; what takes more than 2 processor seconds is timed by one, and what
+    /// Timed frames of each way, in turn with the others; what takes more than a processor second is timed by one, and what
     /// takes more than 10 is not asked for more
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     runs: u16,

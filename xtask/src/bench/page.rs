@@ -23,8 +23,8 @@ Every speed has its error beside it. `cargo xtask bench --write-docs` writes thi
 takes the NASA data sets, and with `--peer vtk` VTK's renderers of unstructured meshes draw the same scenes in the same run, a
 frame of each way in turn. Times are medians of whole frames, from planning to the picture, without reading the file and what
 is found once a mesh; the eye moves a little from frame to frame. CPU is user and system time of all threads: on a shared
-machine compare that, and ratios of one run. What takes more than 2 processor seconds is told by its first frame alone,
-compiling included; what takes more than 10 is not asked for more cells and pixels than those, and the page says so. What the
+machine compare that, and ratios of one run. What takes more than a processor second is told by one frame, on a software
+adapter its first, compiling included; what takes more than 10 is not asked for more cells and pixels than those, and the page says so. What the
 plan chooses is what it chooses for `cargo xtask render`, by the same calibration of the adapter.
 ";
 
@@ -139,7 +139,7 @@ impl Page {
         self.section(
             "Growth",
             "The built-in scene on meshes of more and more cells, and in pictures of more and more pixels; ways by wgpu up to \
-             what takes them 2 processor seconds.\n",
+             what takes them a processor second.\n",
         );
         let curves = |points: &mut dyn Iterator<Item = (f64, &Vec<Grown>)>, value: fn(&Grown) -> Option<f64>| {
             let mut curves: Vec<Curve> = Vec::new();

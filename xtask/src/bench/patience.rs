@@ -3,8 +3,9 @@
 
 use tetlux_scene::Work;
 
-/// Processor seconds of a frame. What takes longer is told by one frame: its first, compiling included.
-pub(crate) const ONCE: f64 = 2.0;
+/// Processor seconds of a frame. What takes longer is told by one frame; on a software adapter that is its
+/// first, compiling included.
+pub(crate) const ONCE: f64 = 1.0;
 
 /// Processor seconds of a frame. A way that took longer is not asked for pictures of as much work and more.
 pub(crate) const MOST: f64 = 10.0;

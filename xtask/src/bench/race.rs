@@ -130,12 +130,11 @@ pub(crate) fn race(bench: &Bench, input: &Input, python: Option<&str>, folder: &
     let narrow = Instructions::all().into_iter().skip(1).find(|set| set.name() == "AVX2");
     let narrow = narrow.map(|set| Renderer::new().with_instructions(set));
     let mut narrow_course = narrow.as_ref().map(|renderer| Course::by(input, bench, renderer));
-    let mut narrow = match &mut narrow_course {
-        Some(course) => Some(start(course, AVX2)?),
-        None => None,
-    };
-    if let Some(Started { method, .. }) = &mut narrow {
-        method.push_str(", by AVX2 alone");
+    let mut narrow = None;
+    match narrow_course.as_mut().map(|course| start(course, AVX2)) {
+        Some(Ok(started)) => narrow = Some(Started { method: format!("{}, by AVX2 alone", started.method), ..started }),
+        Some(Err(error)) => refused.push([AVX2.0.to_owned(), error.to_string()]),
+        None => {}
     }
     let mut theirs = None;
     if let Some(python) = python {

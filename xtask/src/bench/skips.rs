@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use tetlux_optics::Classification;
-use tetlux_optics::transfer::{ColorNode, TransferFunction};
+use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_scene::{Backend, Method, Plan, Projection, Scene, Skip};
 
 use super::Bench;
@@ -35,9 +35,9 @@ const CASES: [Case; 14] = [
     Case { skip: Skip::Transparent, scene: "built-in", on: On::BuiltIn, change: |_| () },
     Case {
         skip: Skip::Faint,
-        scene: "built-in, error budget 0.1",
-        on: On::BuiltIn,
-        change: |scene| scene.method.max_error = 0.1,
+        scene: "box, half of it haze, error budget 0.1",
+        on: On::Box,
+        change: half_haze,
     },
     Case { skip: Skip::Outside, scene: "built-in, from nearby", on: On::BuiltIn, change: nearby },
     Case {
@@ -69,6 +69,17 @@ fn nearby(scene: &mut Scene) {
 pub(super) fn colored(scene: &mut Scene, color: Vec<ColorNode>) {
     if let Some(transfer) = scene.transfer()
         && let Ok(transfer) = TransferFunction::new(color, transfer.opacity_nodes().to_vec())
+    {
+        scene.classification = Classification::OneField(transfer);
+    }
+}
+
+/// Haze that the budget spares below 0, dense above.
+fn half_haze(scene: &mut Scene) {
+    scene.method.max_error = 0.1;
+    let opacity = [[-2.0, 2e-4], [0.0, 2e-4], [0.2, 20.0], [2.0, 30.0]].map(|[s, opacity]| OpacityNode { s, opacity });
+    if let Some(transfer) = scene.transfer()
+        && let Ok(transfer) = TransferFunction::new(transfer.color_nodes().to_vec(), opacity.to_vec())
     {
         scene.classification = Classification::OneField(transfer);
     }
