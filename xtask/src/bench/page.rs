@@ -24,8 +24,8 @@ takes the NASA data sets, and with `--peer vtk` VTK's renderers of unstructured 
 frame of each way in turn. Times are medians of whole frames, from planning to the picture, without reading the file and what
 is found once a mesh; the eye moves a little from frame to frame. CPU is user and system time of all threads: on a shared
 machine compare that, and ratios of one run. What takes more than a processor second is told by one frame, on a software
-adapter its first, compiling included; what takes more than 10 is not asked for more cells and pixels than those, and the page says so. What the
-plan chooses is what it chooses for `cargo xtask render`, by the same calibration of the adapter.
+adapter its first, compiling included; what takes more than 10 is not asked for more cells and pixels than those, and the page
+says so. What the plan chooses is what it chooses for `cargo xtask render`, by the same calibration of the adapter.
 ";
 
 const QUICK: &str = "
@@ -190,11 +190,8 @@ impl Page {
             names.iter().copied().filter(|name| all_ways().any(|way| way.name == *name && on_device(way))).collect();
         let rows = scaling.cells.iter().map(|point| {
             let a_cell = |bytes: f64| number((bytes / cells(point)).round());
-            let ready = [
-                point.cells.to_string(),
-                number(point.assemble_wall_seconds * 1e3),
-                a_cell(point.mesh_bytes as f64),
-            ];
+            let ready =
+                [point.cells.to_string(), number(point.assemble_wall_seconds * 1e3), a_cell(point.mesh_bytes as f64)];
             let device = devices.iter().map(|name| {
                 let way = point.ways.iter().find(|way| way.name == *name && on_device(way));
                 way.map_or("-".to_owned(), |way| a_cell(way.device_bytes as f64))

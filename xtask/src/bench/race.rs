@@ -157,17 +157,18 @@ pub(crate) fn race(bench: &Bench, input: &Input, python: Option<&str>, folder: &
             theirs.run(round)?;
         }
     }
-    let ours = ours.into_iter().chain(narrow).map(|Started { runner, method, backend, resources, error, peak_bytes }| Entry {
-        name: runner.name.to_owned(),
-        method,
-        cost: runner.cost(),
-        error,
-        cells_drawn: Some(resources.cells),
-        device_bytes: (backend == Backend::Gpu).then_some(resources.bytes),
-        peak_bytes,
-        on_front: false,
-        rival: None,
-    });
+    let ours =
+        ours.into_iter().chain(narrow).map(|Started { runner, method, backend, resources, error, peak_bytes }| Entry {
+            name: runner.name.to_owned(),
+            method,
+            cost: runner.cost(),
+            error,
+            cells_drawn: Some(resources.cells),
+            device_bytes: (backend == Backend::Gpu).then_some(resources.bytes),
+            peak_bytes,
+            on_front: false,
+            rival: None,
+        });
     let mut entries: Vec<Entry> = ours.collect();
     let peer = theirs.as_ref().map(|theirs| theirs.peer.about.clone());
     entries.extend(theirs.into_iter().flat_map(Rivals::entries));

@@ -33,12 +33,7 @@ struct Case {
 
 const CASES: [Case; 14] = [
     Case { skip: Skip::Transparent, scene: "built-in", on: On::BuiltIn, change: |_| () },
-    Case {
-        skip: Skip::Faint,
-        scene: "box, half of it haze, error budget 0.1",
-        on: On::Box,
-        change: half_haze,
-    },
+    Case { skip: Skip::Faint, scene: "box, half of it haze, error budget 0.1", on: On::Box, change: half_haze },
     Case { skip: Skip::Outside, scene: "built-in, from nearby", on: On::BuiltIn, change: nearby },
     Case {
         skip: Skip::Opaque,
