@@ -1,5 +1,6 @@
 //! `cargo xtask bench`
 
+mod budgets;
 mod data;
 mod front;
 mod kraus;
@@ -7,26 +8,32 @@ mod measure;
 mod moreland;
 mod page;
 mod paper;
+mod patience;
 mod peer;
 mod race;
 mod scaling;
+mod skips;
 mod song;
 mod table;
 mod targets;
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use anyhow::{Result, bail};
 use serde::Serialize;
 use tetlux_image::write_atomically;
 use tetlux_render::Renderer;
 
+use crate::calibration::Calibration;
 use crate::input::{Input, SceneArgs, parse_size};
 use crate::machine::Machine;
 use crate::methods::{GRADED, PEAK};
 use crate::report::{create_folder, write_json};
 use data::Data;
 use paper::{PAPERS, Paper};
+use patience::Patience;
 use race::Race;
 use scaling::Scaling;
 use table::Table;
@@ -41,9 +48,10 @@ Examples:
   cargo xtask bench --write-docs --data nasa --peer vtk
   cargo xtask bench --quick
 
-A bench races scenes (every way of drawing, time against error), then measures how time and memory grow with cells and pixels
-and judges the targets. Scenes that are named are raced alone, --paper NAME gives papers' tables alone, and --write-docs all of
-it. A machine that does nothing else gives the best figures. --peer vtk needs VTK for Python: pip install vtk.";
+A bench races scenes (every way of drawing, time against error), then measures how time and memory grow with cells and pixels,
+what each skip of the plan saves and what an error budget buys, and judges the targets. Scenes that are named are raced alone,
+--paper NAME gives papers' tables alone, and --write-docs all of it: about a quarter of an hour on two cores without a graphics
+card. A machine that does nothing else gives the best figures. --peer vtk needs VTK for Python: pip install vtk.";
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -67,7 +75,8 @@ pub(crate) struct Args {
     /// Picture size in pixels [default: 800x800; of papers theirs, or a quarter of each side on a software adapter]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<[u32; 2]>,
-    /// Timed frames of each way, in turn with the others; of what takes more than 10 processor seconds a single one
+    /// Timed frames of each way, in turn with the others; what takes more than a processor second is timed by one, and what
+    /// takes more than 10 is not asked for more
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     runs: u16,
     /// Small meshes and pictures, a frame each: whether it all works
@@ -88,6 +97,9 @@ pub(crate) struct Bench<'a> {
     runs: usize,
     quick: bool,
     size: Option<[u32; 2]>,
+    calibration: Calibration,
+    patience: RefCell<Patience>,
+    begun: Instant,
 }
 
 /// Loads a scene and its mesh.
@@ -101,6 +113,10 @@ pub(crate) struct Results {
     machine: Machine,
     races: Vec<Race>,
     scaling: Option<Scaling>,
+    /// What each skip of the plan saves.
+    skips: Option<Table>,
+    /// What an error budget buys.
+    budgets: Option<Table>,
     targets: Vec<Target>,
     papers: Vec<Table>,
 }
@@ -109,7 +125,26 @@ pub(crate) struct Results {
 const QUICK_SIDE: u32 = 32;
 const SIZE: [u32; 2] = [800; 2];
 
-impl Bench<'_> {
+impl<'a> Bench<'a> {
+    /// Without data, a frame of each way.
+    fn new(renderer: &'a Renderer) -> Bench<'a> {
+        Bench {
+            renderer,
+            data: Data::default(),
+            runs: 1,
+            quick: false,
+            size: None,
+            calibration: Calibration::default(),
+            patience: RefCell::default(),
+            begun: Instant::now(),
+        }
+    }
+
+    /// Says what is measured next, and when.
+    fn tell(&self, what: &str) {
+        say!("{:>6.1} s  {what}", self.begun.elapsed().as_secs_f64());
+    }
+
     /// What draws by wgpu.
     fn adapter(&self) -> String {
         self.renderer.device().map_or("no adapter".into(), |device| device.name.clone())
@@ -177,17 +212,19 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let papers = papers(if args.write_docs { &all } else { &args.paper })?;
     let renderer = Renderer::new();
     let bench = Bench {
-        renderer: &renderer,
         data: Data::new(args.data.as_deref())?,
         runs: if args.quick { 1 } else { usize::from(args.runs) },
         quick: args.quick,
         size: args.size,
+        ..Bench::new(&renderer)
     };
     let mut results = Results {
         quick: args.quick,
         machine: Machine::new(&renderer),
         races: Vec::new(),
         scaling: None,
+        skips: None,
+        budgets: None,
         targets: Vec::new(),
         papers: Vec::new(),
     };
@@ -195,22 +232,35 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let racing = args.paper.is_empty();
     if racing {
         let python = args.peer.as_ref().map(|_| args.python.as_str());
-        for load in bench.inputs(&args.scenes) {
-            let race = race::race(&bench, &load()?, python, &args.output.join("peer"))?;
+        let inputs = bench.inputs(&args.scenes);
+        for (number, load) in inputs.iter().enumerate() {
+            let input = load()?;
+            bench.tell(&format!("race {} of {}: {}", number + 1, inputs.len(), input.title));
+            let race = race::race(&bench, &input, python, &args.output.join("peer"))?;
             print(&race);
             results.races.push(race);
         }
     }
     if racing && args.scenes.is_empty() {
-        say!("growth");
+        bench.tell("growth");
         let scaling = scaling::scaling(&bench)?;
-        results.targets = targets::targets(&results.machine, &results.races, &scaling, bench.hardware());
+        results.targets = targets::targets(&results.races, &scaling, bench.hardware());
         for Target { what, goal, found, verdict } in &results.targets {
             say!("{:<12} {what}: {found} (goal {goal})", verdict.words().trim_matches('*'));
         }
         results.scaling = Some(scaling);
+        for (part, measure, into) in [
+            ("what skipping saves", skips::skips as fn(&Bench) -> Result<Table>, &mut results.skips),
+            ("what an error budget buys", budgets::budgets, &mut results.budgets),
+        ] {
+            bench.tell(part);
+            let table = measure(&bench)?;
+            say!("{}", table.text());
+            *into = Some(table);
+        }
     }
     for (name, measure) in papers {
+        bench.tell(&format!("paper: {name}"));
         let table = measure(&bench)?;
         say!("{}", table.text());
         write_json(&args.output.join(format!("paper-{name}.json")), &table)?;
@@ -222,7 +272,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     write_page(&results, &page)?;
     let json = args.output.join(name).with_extension("json");
     write_json(&json, &results)?;
-    say!("{}\n{}", page.display(), json.display());
+    bench.tell(&format!("{}, {}", page.display(), json.display()));
     Ok(())
 }
 

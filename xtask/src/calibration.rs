@@ -1,15 +1,16 @@
 //! What this machine's graphics adapters were measured to take, kept in the cache folder between runs.
 
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use tetlux_image::write_atomically;
 use tetlux_ingest::Cache;
+use tetlux_mesh::TetMesh;
 use tetlux_render::Renderer;
-use tetlux_scene::{Cost, Costs, Device, Plan};
+use tetlux_scene::{Cost, Costs, Device, Plan, Scene};
 
-use crate::input::Input;
 use crate::progress;
 
 /// In the cache folder.
@@ -43,29 +44,46 @@ impl Kept {
     }
 }
 
-/// The adapter there is, with what it was measured to take where the plan follows that: measured now if it never was.
-pub(crate) fn device(input: &Input, renderer: &Renderer) -> Result<Option<Device>> {
-    let Some(device) = renderer.device() else { return Ok(None) };
-    if !Plan::follows_costs(&input.scene, &input.mesh, Some(device))? {
-        return Ok(Some(device.clone()));
+/// What the adapter takes, found when a plan first follows it: for all pictures of a command.
+#[derive(Default)]
+pub(crate) struct Calibration {
+    costs: Mutex<Option<Costs>>,
+}
+
+impl Calibration {
+    /// The adapter there is, with what it was measured to take where a scene's plan follows that: measured now if it never
+    /// was.
+    pub(crate) fn device(&self, scene: &Scene, mesh: &TetMesh, renderer: &Renderer) -> Result<Option<Device>> {
+        let Some(device) = renderer.device() else { return Ok(None) };
+        if !Plan::follows_costs(scene, mesh, Some(device))? {
+            return Ok(Some(device.clone()));
+        }
+        // Frames that are made at a time wait for one measurement; one that failed left nothing half done.
+        let mut known = self.costs.lock().unwrap_or_else(PoisonError::into_inner);
+        let costs = match *known {
+            Some(costs) => costs,
+            None => *known.insert(kept_or_measured(device, renderer)?),
+        };
+        Ok(Some(Device { costs: Some(costs), ..device.clone() }))
     }
+}
+
+/// What an adapter takes, as it is kept or else as it is measured now.
+fn kept_or_measured(device: &Device, renderer: &Renderer) -> Result<Costs> {
     let file = Cache::of_user().map(|cache| cache.folder.join(FILE));
     let mut all = file.as_deref().map_or(Vec::new(), read);
-    let costs = match all.iter().find(|kept| kept.is_of(device)) {
-        Some(kept) => kept.costs,
-        None => {
-            let costs = progress::during("measuring what the adapter takes", || renderer.costs())?;
-            let (adapter, driver) = (device.name.clone(), device.driver.clone());
-            all.insert(0, Kept { adapter, driver, version: env!("CARGO_PKG_VERSION").into(), costs });
-            all.truncate(MOST);
-            // That it cannot be kept is no fault of the picture's: it is measured again.
-            if let Some(file) = &file {
-                let _ = write(file, &all);
-            }
-            costs
-        }
-    };
-    Ok(Some(Device { costs: Some(costs), ..device.clone() }))
+    if let Some(kept) = all.iter().find(|kept| kept.is_of(device)) {
+        return Ok(kept.costs);
+    }
+    let costs = progress::during("measuring what the adapter takes", || renderer.costs())?;
+    let (adapter, driver) = (device.name.clone(), device.driver.clone());
+    all.insert(0, Kept { adapter, driver, version: env!("CARGO_PKG_VERSION").into(), costs });
+    all.truncate(MOST);
+    // That it cannot be kept is no fault of the picture's: it is measured again.
+    if let Some(file) = &file {
+        let _ = write(file, &all);
+    }
+    Ok(costs)
 }
 
 /// Removes what is kept in a cache folder.

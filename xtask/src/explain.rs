@@ -6,16 +6,18 @@ use tetlux_image::{Image, compare};
 use tetlux_render::{Frame, Renderer, Stage, bytes_saved};
 use tetlux_scene::{Fate, Plan, Planner, Scene, Skip, SkipLine};
 
+use crate::calibration::Calibration;
 use crate::input::Input;
-use crate::{calibration, progress, tables};
+use crate::report::median;
+use crate::{progress, tables};
 
 /// A line of the plan, and what it saves.
 #[derive(Serialize)]
 pub(crate) struct Saving {
     #[serde(flatten)]
-    line: SkipLine,
+    pub(crate) line: SkipLine,
     /// Bytes of memory, as far as they are known before the picture.
-    bytes: u64,
+    pub(crate) bytes: u64,
     /// Processor milliseconds of the first picture and of a further one, without it less with it.
     #[serde(skip_serializing_if = "Option::is_none")]
     cpu_ms: Option<[f64; 2]>,
@@ -73,23 +75,54 @@ pub(crate) fn print(savings: &[Saving]) {
 }
 
 /// Renders without each of what is skipped, in turn with the plan's own pictures, and prints what it saved.
-pub(crate) fn measure(input: &Input, savings: &mut [Saving], image: &Image) -> Result<()> {
+pub(crate) fn measure(input: &Input, savings: &mut [Saving]) -> Result<()> {
+    let calibration = Calibration::default();
     say!("measured by rendering without each: processor ms saved of the first picture, and of the next");
     say!("{:<12} {:>9} {:>10} {:>9} {:>9} {:>14}", "skip", "cells", "bytes", "first", "next", "pixels change");
     let skipped = |saving: &&mut Saving| matches!(saving.line.fate, Fate::Skipped) || is_kept_for_later(saving);
     for saving in savings.iter_mut().filter(skipped) {
         let skip = saving.line.skip;
-        let mut without = input.scene.clone();
-        without.method.no_skip = without.method.no_skip.with(skip);
-        let both = || -> Result<_> { Ok((twice(input, &input.scene)?, twice(input, &without)?)) };
-        let ((with, _), (time, other)) = progress::during(&format!("measuring without {skip}"), both)?;
-        let ms = [0, 1].map(|i| 1e3 * (time[i] - with[i]));
-        let difference = compare(image, &other, input.scene.method.max_error)?.max;
+        let Without { cpu_seconds: [with, without], difference } = Without::measure(input, skip, 1, &calibration)?;
+        let ms = [0, 1].map(|i| 1e3 * (without[i] - with[i]));
         let (name, cells, bytes) = (skip.to_string(), number(saving.line.cells as u64), number(saving.bytes));
         say!("{name:<12} {cells:>9} {bytes:>10} {:>9.1} {:>9.1} {difference:>14.1e}", ms[0], ms[1]);
         (saving.cpu_ms, saving.difference) = (Some(ms), Some(difference));
     }
     Ok(())
+}
+
+/// What pictures take with a skip and without it.
+pub(crate) struct Without {
+    /// With it, and without: of the first picture and of the next, by all that is new; medians.
+    pub(crate) cpu_seconds: [[f64; 2]; 2],
+    /// Largest difference of a pixel.
+    pub(crate) difference: f64,
+}
+
+impl Without {
+    /// Renders with and without in turn, so many times.
+    pub(crate) fn measure(input: &Input, skip: Skip, runs: usize, calibration: &Calibration) -> Result<Without> {
+        let mut without = input.scene.clone();
+        without.method.no_skip = without.method.no_skip.with(skip);
+        let scenes = [&input.scene, &without];
+        let mut seconds: [[Vec<f64>; 2]; 2] = Default::default();
+        let mut pictures: [Option<Image>; 2] = [None, None];
+        progress::during(&format!("measuring without {skip}"), || -> Result<()> {
+            for _ in 0..runs {
+                for (which, scene) in scenes.into_iter().enumerate() {
+                    let (took, picture) = twice(input, scene, calibration)?;
+                    (0..2).for_each(|i| seconds[which][i].push(took[i]));
+                    pictures[which] = Some(picture);
+                }
+            }
+            Ok(())
+        })?;
+        let difference = match &pictures {
+            [Some(a), Some(b)] => compare(a, b, input.scene.method.max_error)?.max,
+            _ => 0.0,
+        };
+        Ok(Without { cpu_seconds: seconds.map(|both| both.map(median)), difference })
+    }
 }
 
 /// Whether it spares pictures after the first.
@@ -100,9 +133,9 @@ fn is_kept_for_later(saving: &Saving) -> bool {
 }
 
 /// Processor seconds of the first picture and of the next, by all that is new; and the picture.
-fn twice(input: &Input, scene: &Scene) -> Result<([f64; 2], Image)> {
+fn twice(input: &Input, scene: &Scene, calibration: &Calibration) -> Result<([f64; 2], Image)> {
     let (renderer, planner) = (Renderer::new(), Planner::new(&input.mesh));
-    let device = calibration::device(input, &renderer)?;
+    let device = calibration.device(scene, &input.mesh, &renderer)?;
     let mut model = None;
     let mut picture = || -> Result<(f64, Image)> {
         let mut stages = tetlux_render::Stages::default();

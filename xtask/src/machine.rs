@@ -41,11 +41,6 @@ impl Machine {
         }
     }
 
-    /// The best instruction set that tiles on the processor are drawn with.
-    pub(crate) fn has_avx512(&self) -> bool {
-        self.instruction_sets.contains(&"AVX-512")
-    }
-
     /// Names and what they are.
     pub(crate) fn rows(&self) -> Vec<[String; 2]> {
         let unknown = || "-".to_owned();

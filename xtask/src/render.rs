@@ -7,10 +7,11 @@ use tetlux_image::{Encoding, Image, write_exr, write_png};
 use tetlux_render::{Frame, Renderer, Stages};
 use tetlux_scene::{Backend, Plan};
 
+use crate::calibration::Calibration;
 use crate::input::{Input, SceneArgs};
 use crate::report::{Report, create_folder};
 use crate::sequence::{self, SequenceArgs};
-use crate::{calibration, explain, progress, tables};
+use crate::{explain, progress, tables};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -74,7 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     report.print_stages();
     explain::resolve(&mut report.skips, &frame);
     if args.explain {
-        explain::measure(&input, &mut report.skips, &frame.image)?;
+        explain::measure(&input, &mut report.skips)?;
     }
     let png = args.output.clone().unwrap_or_else(|| PathBuf::from("out").join(&input.name).with_extension("png"));
     report.files = write_picture(&input, &frame.image, &png)?;
@@ -88,7 +89,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 /// Plans and renders; `announce` is told the plan before anything is drawn.
 pub(crate) fn render(input: &Input, renderer: &Renderer, announce: impl FnOnce(&Plan)) -> Result<(Plan, Frame)> {
     let mut stages = Stages::default();
-    let device = calibration::device(input, renderer)?;
+    let device = Calibration::default().device(&input.scene, &input.mesh, renderer)?;
     let mut plan = stages.run("plan", || Plan::new(&input.scene, &input.mesh, device.as_ref()))?;
     let tables = stages.run("tables", || tables::load(input, &plan));
     let tables = tables::or_directly(tables, input.integrator_forced, &mut plan)?;

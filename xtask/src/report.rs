@@ -231,6 +231,16 @@ pub(crate) fn print_metrics(metrics: &Metrics, budget: f64) {
     say!("  over {budget:.1e}: {} pixels; not finite: {} pixels", metrics.over, metrics.non_finite);
 }
 
+/// The middle value, or the mean of the two in the middle; 0 of none.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    match (values.len(), values.len() / 2) {
+        (0, _) => 0.0,
+        (n, half) if n.is_multiple_of(2) => 0.5 * (values[half - 1] + values[half]),
+        (_, half) => values[half],
+    }
+}
+
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value)?;
     create_folder(path)?;
@@ -246,5 +256,15 @@ pub(crate) fn create_folder(path: &Path) -> Result<()> {
             std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))
         }
         _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_is_in_the_middle() {
+        assert_eq!([vec![], vec![3.0], vec![9.0, 1.0], vec![5.0, 1.0, 9.0]].map(median), [0.0, 3.0, 5.0, 5.0]);
     }
 }

@@ -8,6 +8,7 @@ use serde::Serialize;
 use tetlux_render::{Frame, Model, Renderer, Stages, frames};
 use tetlux_scene::{Plan, Planner, Scene};
 
+use crate::calibration::Calibration;
 use crate::input::{Input, SceneArgs};
 use crate::report::{Report, StageReport, stages_of, write_json};
 use crate::{progress, render, tables};
@@ -109,6 +110,7 @@ struct Shared<'a> {
     course: &'a Course,
     input: &'a Input,
     renderer: Renderer,
+    calibration: Calibration,
     planner: Planner<'a>,
     model: Model<'a>,
     begun: Instant,
@@ -132,13 +134,16 @@ pub(crate) fn run(
     let renderer = Renderer::new();
     let adapter = renderer.device().map(|d| d.name.clone());
     let planner = Planner::new(&input.mesh);
-    let plan = planner.plan(&input.scene, renderer.device())?;
+    let calibration = Calibration::default();
+    let device = calibration.device(&input.scene, &input.mesh, &renderer)?;
+    let plan = planner.plan(&input.scene, device.as_ref())?;
     let report = Report::new(&input, &plan, adapter.as_deref(), &[]);
     report.print_plan(&plan);
     let png = output.map_or_else(|| PathBuf::from("out").join(&input.name).with_extension("png"), Path::to_path_buf);
     let model = input.model(&plan);
     let begun = Instant::now();
-    let shared = Shared { args, scene, course: &course, input: &input, renderer, planner, model, begun, png };
+    let course = &course;
+    let shared = Shared { args, scene, course, input: &input, renderer, calibration, planner, model, begun, png };
 
     let bar = progress::bar("frames", numbers.len() as u32);
     let mut entries: Vec<Entry> = Vec::new();
@@ -259,7 +264,8 @@ fn moment(shared: &Shared, number: usize) -> Result<Moment> {
 
 fn picture(shared: &Shared, input: &Input, scene: &Scene, planner: &Planner, model: &Model) -> Result<(Plan, Frame)> {
     let mut stages = Stages::default();
-    let mut plan = stages.run("plan", || planner.plan(scene, shared.renderer.device()))?;
+    let device = shared.calibration.device(scene, &input.mesh, &shared.renderer)?;
+    let mut plan = stages.run("plan", || planner.plan(scene, device.as_ref()))?;
     let loaded = stages.run("tables", || tables::load(input, &plan));
     let loaded = tables::or_directly(loaded, input.integrator_forced, &mut plan)?;
     let mut frame = shared.renderer.render_with(scene, model, &plan, &loaded)?;

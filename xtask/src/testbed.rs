@@ -1,5 +1,7 @@
 //! `cargo xtask testbed`
 
+#[cfg(test)]
+mod agreement;
 mod cases;
 pub(crate) mod meshes;
 mod picture;

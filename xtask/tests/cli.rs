@@ -523,10 +523,28 @@ fn a_quick_bench_states_time_error_growth_and_targets() {
     assert!(entries.iter().any(|entry| entry["on_front"] == true));
     assert_eq!(found["scaling"]["cells"].as_array().unwrap().len(), 2);
     assert!(found["targets"].as_array().unwrap().len() > 20);
+    // Every skip: the picture with it and without; pixels change by no more than budgets allow.
+    let skips = found["skips"]["rows"].as_array().unwrap();
+    assert_eq!(skips.len(), 14);
+    for row in skips {
+        assert!((5..9).all(|time| row[time].as_f64().unwrap() > 0.0) && row[9].as_f64().unwrap() < 1e-2, "{row}");
+    }
+    assert_eq!(found["budgets"]["rows"].as_array().unwrap().len(), 4);
     let page = fs::read_to_string(made.join("benchmarks.md")).unwrap();
-    for part in
-        ["**A quick run**", "## Machine", "| default", "## Targets", "not measured", "benchmarks/peak.svg", "## Growth"]
-    {
+    for part in [
+        "**A quick run**",
+        "## Machine",
+        "| default",
+        "| wgpu, tiles",
+        "## Targets",
+        "not measured",
+        "benchmarks/peak.svg",
+        "## Growth",
+        "device bytes a cell",
+        "## What skipping saves",
+        "| `last-order` | box, its second picture |",
+        "## What an error budget buys",
+    ] {
         assert!(page.contains(part), "\"{part}\" is not in:\n{page}");
     }
     for plot in ["peak", "growth-cells", "growth-pixels", "growth-memory"] {

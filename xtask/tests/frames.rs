@@ -108,6 +108,25 @@ fn an_orbit_is_numbered_and_each_frame_is_that_rendered_alone() {
 }
 
 #[test]
+fn a_sequence_draws_by_what_the_adapter_takes_as_a_picture_alone_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // Large enough that the plan asks what the adapter takes.
+    let scene = "render --grid 10 --size 640x640 --backend gpu";
+    succeed(folder, &format!("{scene} --orbit 5 --frame 1 --output turn.png --json turn.json"));
+    assert!(folder.join("cache/adapter-costs.json").exists(), "measured for the sequence");
+    succeed(folder, &format!("{scene} --output alone.png --json alone.json"));
+    let [turn, alone] = ["turn.json", "alone.json"].map(|name| json(&folder.join(name)));
+    let why = |report: &serde_json::Value| {
+        let plan = report["plan"].as_array().unwrap();
+        plan.iter().find(|line| line[0] == "projection").unwrap()[1].as_str().unwrap().to_owned()
+    };
+    assert!(why(&turn).contains("was measured to take"), "{}", why(&turn));
+    assert_eq!(why(&turn), why(&alone));
+    assert_eq!(pixels(folder, "turn-0001.exr"), pixels(folder, "alone.exr"));
+}
+
+#[test]
 fn time_steps_and_files_become_frames() {
     let folder = folder();
     let folder = folder.path();

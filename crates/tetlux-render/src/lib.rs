@@ -44,6 +44,7 @@ mod device_view;
 mod error;
 mod eye_space;
 mod gpu;
+mod instructions;
 #[cfg(test)]
 mod layout_tests;
 mod lens;
@@ -61,6 +62,7 @@ mod tables;
 mod tiles;
 
 pub use error::RenderError;
+pub use instructions::Instructions;
 pub use look::Spent;
 pub use model::Model;
 pub use order::sampling;
@@ -169,6 +171,7 @@ fn opaque(hidden: f64, pieces: &[Piece], look: Option<&Look>, backdrop: Option<&
 pub struct Renderer {
     gpu: Option<gpu::Gpu>,
     orderer: Mutex<Orderer>,
+    instructions: Instructions,
     room: tiles::Room,
 }
 
@@ -181,7 +184,18 @@ impl Default for Renderer {
 impl Renderer {
     /// Looks for a graphics adapter, hardware before software; opens none.
     pub fn new() -> Renderer {
-        Renderer { gpu: gpu::Gpu::find(), orderer: Mutex::default(), room: tiles::Room::default() }
+        Renderer {
+            gpu: gpu::Gpu::find(),
+            orderer: Mutex::default(),
+            instructions: Instructions::default(),
+            room: tiles::Room::default(),
+        }
+    }
+
+    /// Draws by these vector instructions where the processor draws: to compare them. The best are the default.
+    #[must_use]
+    pub fn with_instructions(self, instructions: Instructions) -> Renderer {
+        Renderer { instructions, ..self }
     }
 
     /// The adapter there is, for the plan.
@@ -306,7 +320,7 @@ impl Renderer {
         let Drawn { mut pixels, resources, spent } = match plan.backend {
             Backend::Gpu => self.gpu.as_ref().ok_or(RenderError::NoAdapter)?.draw(plan, &job, &mut stages)?,
             Backend::Cpu | Backend::Auto => {
-                let (pixels, pieces) = tiles::draw(&job, &self.room, &mut stages);
+                let (pixels, pieces) = tiles::draw(self.instructions.0, &job, &self.room, &mut stages);
                 let resources = Resources { cells: cells.len(), ..Resources::default() };
                 Drawn { pixels, resources, spent: job.look.is_some().then_some(pieces) }
             }

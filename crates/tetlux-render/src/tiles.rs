@@ -56,18 +56,18 @@ pub(crate) fn bytes_set_up(cells: u64) -> u64 {
 pub(crate) struct Room(Mutex<Vec<Chunk>>);
 
 /// Draws a picture: premultiplied pixels, top row first; and what segments took that were shaded one by one.
-pub(crate) fn draw(job: &Job, room: &Room, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
+pub(crate) fn draw(level: Level, job: &Job, room: &Room, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     // Another picture that is drawn at the same time finds none, and makes its own.
     let lock = || room.0.lock().unwrap_or_else(PoisonError::into_inner);
     let mut chunks = std::mem::take(&mut *lock());
-    let drawn = draw_on(Level::new(), job, &mut chunks, stages);
+    let drawn = draw_on(level, job, &mut chunks, stages);
     chunks.truncate(BATCH / CHUNK);
     chunks.shrink_to_fit();
     *lock() = chunks;
     drawn
 }
 
-/// The same with a given instruction set.
+/// The same in memory of its own.
 fn draw_on(level: Level, job: &Job, chunks: &mut Vec<Chunk>, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     let eye = &job.eye;
     let all_weights = job.kept.contains(Skip::Weights);

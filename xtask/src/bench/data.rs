@@ -8,6 +8,7 @@ use tetlux_mesh::TetMesh;
 use crate::input::SceneArgs;
 
 /// The folder, if one is given.
+#[derive(Default)]
 pub(crate) struct Data {
     folder: Option<PathBuf>,
 }

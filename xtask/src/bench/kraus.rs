@@ -7,7 +7,7 @@ use tetlux_scene::{Backend, CellProjection, Integrator, Interpolation, Method, T
 use super::Bench;
 use super::measure::{Course, Way};
 use super::paper::{BLUNT_FIN, CYLINDER, HEAT_SINK, X38};
-use super::table::Table;
+use super::table::{Cell, Table};
 
 const SIZE: [u32; 2] = [800, 600];
 
@@ -60,21 +60,23 @@ const OURS: Way = ("here: the default", |_| ());
 pub(crate) fn enhancements(bench: &Bench) -> Result<Table> {
     let size = bench.paper_size(SIZE);
     let (input, source) = BLUNT_FIN.input(bench, size)?;
-    let mut course = Course::new(&input, bench.renderer);
+    let mut course = Course::new(&input, bench);
     let ways = ENHANCEMENTS.iter().map(|(way, _)| *way).chain([OURS]);
     let costs = course.costs(ways.clone(), bench.runs)?;
     let theirs = ENHANCEMENTS.iter().map(|(_, seconds)| Some(*seconds)).chain([None]);
     // Each over that of the basic algorithm.
-    let [theirs_basic, ours_basic] = [ENHANCEMENTS[0].1, costs[0].0.wall_seconds];
-    let rows = ways.zip(theirs).zip(costs).map(|(((name, _), theirs), (cost, _))| {
-        vec![
-            name.into(),
-            theirs.into(),
-            theirs.map(|seconds| seconds / theirs_basic).into(),
-            cost.wall_seconds.into(),
-            (cost.wall_seconds / ours_basic).into(),
-            cost.cpu_seconds.into(),
-        ]
+    let theirs_basic = ENHANCEMENTS[0].1;
+    let ours_basic = costs.first().and_then(|found| found.as_ref().ok()).map(|(cost, _)| cost.wall_seconds);
+    let rows = ways.zip(theirs).zip(costs).map(|(((name, _), theirs), found)| {
+        let ours = match found {
+            Ok((cost, _)) => {
+                let wall = cost.wall_seconds;
+                [wall.into(), ours_basic.map(|basic| wall / basic).into(), cost.cpu_seconds.into()]
+            }
+            Err(why) => [why.into(), Cell::Unknown, Cell::Unknown],
+        };
+        let ratio = theirs.map(|seconds| seconds / theirs_basic);
+        [vec![name.into(), theirs.into(), ratio.into()], ours.to_vec()].concat()
     });
     Ok(Table {
         name: "kraus-1",
@@ -95,21 +97,25 @@ pub(crate) fn data_sets(bench: &Bench) -> Result<Table> {
     let mut rows = Vec::new();
     for (set, seconds, rate) in sets {
         let (input, source) = set.input(bench, size)?;
-        let mut course = Course::new(&input, bench.renderer);
+        let mut course = Course::new(&input, bench);
         let ways: [Way; 2] = [("as published", logarithmic), OURS];
         let costs = course.costs(ways, bench.runs)?;
-        for ((way, theirs), (cost, frame)) in ways.iter().zip([Some((seconds, rate)), None]).zip(costs) {
-            rows.push(vec![
+        for ((way, theirs), found) in ways.iter().zip([Some((seconds, rate)), None]).zip(costs) {
+            let ours = match found {
+                Ok((cost, frame)) => {
+                    let (cells, wall) = (frame.resources.cells, cost.wall_seconds);
+                    [cells.into(), wall.into(), (cells as f64 / wall * 1e-3).into(), cost.cpu_seconds.into()]
+                }
+                Err(why) => [input.mesh.cells().len().into(), why.into(), Cell::Unknown, Cell::Unknown],
+            };
+            let published: [Cell; 5] = [
                 format!("{} ({source})", set.name).into(),
                 way.0.into(),
                 theirs.map(|_| set.cells as f64).into(),
                 theirs.map(|t| t.0).into(),
                 theirs.map(|t| t.1).into(),
-                frame.resources.cells.into(),
-                cost.wall_seconds.into(),
-                (frame.resources.cells as f64 / cost.wall_seconds * 1e-3).into(),
-                cost.cpu_seconds.into(),
-            ]);
+            ];
+            rows.push([published.to_vec(), ours.to_vec()].concat());
         }
     }
     let head = [

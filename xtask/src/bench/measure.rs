@@ -6,11 +6,13 @@ use anyhow::Result;
 use glam::DQuat;
 use serde::Serialize;
 use tetlux_render::{Frame, Model, Renderer, Stage, Stages};
-use tetlux_scene::{Method, Plan, Scene};
+use tetlux_scene::{Backend, Device, Method, Plan, Scene, Work};
 use tetlux_tables::Table;
 
+use super::Bench;
+use super::patience::ONCE;
 use crate::input::Input;
-use crate::report::StageReport;
+use crate::report::{StageReport, median};
 use crate::{progress, tables};
 
 /// A way to draw a scene: its name, and the method as a change of the scene's.
@@ -20,14 +22,12 @@ pub(crate) type Way = (&'static str, fn(&mut Method));
 /// enough that nothing is kept from the last view.
 pub(crate) const TURN: f64 = 1e-3;
 
-/// Processor seconds; what takes longer is timed once.
-pub(crate) const LONG: f64 = 10.0;
-
 /// The name of the stage that is a whole frame.
 const FRAME: &str = "frame";
 
 /// A scene, and what is kept of it from frame to frame.
 pub(crate) struct Course<'a> {
+    bench: &'a Bench<'a>,
     input: &'a Input,
     renderer: &'a Renderer,
     model: Model<'a>,
@@ -40,12 +40,14 @@ pub(crate) struct Course<'a> {
 pub(crate) struct Runner {
     pub(crate) name: &'static str,
     method: Method,
+    /// With what it takes, where the plan follows that: the choice is the one that `render` makes.
+    device: Option<Device>,
     tables: Vec<Arc<Table>>,
     samples: Vec<Vec<Stage>>,
 }
 
 /// What a frame takes: medians over several. All but the first of a way, so that neither what is found of the mesh nor
-/// what is compiled counts.
+/// what is compiled counts; of what takes a software adapter long the first alone.
 #[derive(Serialize, Clone)]
 pub(crate) struct Cost {
     pub(crate) frames: usize,
@@ -56,71 +58,120 @@ pub(crate) struct Cost {
 }
 
 impl<'a> Course<'a> {
-    pub(crate) fn new(input: &'a Input, renderer: &'a Renderer) -> Course<'a> {
-        Course { input, renderer, model: Model::new(&input.mesh), scene: input.scene.clone(), frames: 0 }
+    pub(crate) fn new(input: &'a Input, bench: &'a Bench) -> Course<'a> {
+        Course::by(input, bench, bench.renderer)
     }
 
-    /// Draws once from the scene's own camera, which is not timed.
+    /// By another renderer than the bench's.
+    pub(crate) fn by(input: &'a Input, bench: &'a Bench, renderer: &'a Renderer) -> Course<'a> {
+        Course { bench, input, renderer, model: Model::new(&input.mesh), scene: input.scene.clone(), frames: 0 }
+    }
+
+    /// How much there is to draw.
+    fn work(&self) -> Result<Work> {
+        Ok(Work::new(&self.input.mesh, &self.scene.camera.view(self.scene.size)?))
+    }
+
+    /// Why a way is not to be asked, if so: it took long for less.
+    pub(crate) fn refusal(&self, (name, _): Way) -> Result<Option<String>> {
+        Ok(self.bench.patience.borrow().refusal(name, &self.work()?))
+    }
+
+    /// Draws once from the scene's own camera, which is timed only if it takes a software adapter long.
     pub(crate) fn start(&mut self, (name, change): Way) -> Result<(Runner, Plan, Frame)> {
         let mut method = self.input.scene.method;
         change(&mut method);
         self.scene.method = method;
         self.scene.camera = self.input.scene.camera;
-        let plan = Plan::new(&self.scene, &self.input.mesh, self.renderer.device())?;
-        let tables = tables::load_or_build(self.input, &plan)?;
-        let draw = || self.renderer.render_with(&self.scene, &self.model, &plan, &tables);
-        let frame = progress::during(name, draw)?;
-        Ok((Runner { name, method, tables, samples: Vec::new() }, plan, frame))
+        let device = self.bench.calibration.device(&self.scene, &self.input.mesh, self.renderer)?;
+        let mut runner = Runner { name, method, device, tables: Vec::new(), samples: Vec::new() };
+        let plan = Plan::new(&self.scene, &self.input.mesh, runner.device.as_ref())?;
+        runner.tables = tables::load_or_build(self.input, &plan)?;
+        let (frame, sample) = self.frame(&runner)?;
+        let seconds = sample.first().map_or(0.0, taken);
+        self.bench.patience.borrow_mut().note(name, &self.work()?, seconds, &self.input.title);
+        // What the processor finds of a mesh in its first frame, and what a graphics card's driver compiles, is not a frame's.
+        let by_software = plan.backend == Backend::Gpu && runner.device.as_ref().is_some_and(|device| device.software);
+        if seconds > ONCE && by_software {
+            runner.samples.push(sample);
+        }
+        Ok((runner, plan, frame))
     }
 
     /// Draws and times a frame, from planning to the picture, the eye turned a little further.
     pub(crate) fn run(&mut self, runner: &mut Runner) -> Result<()> {
         self.frames += 1;
-        let Course { input, renderer, model, scene, frames } = self;
+        let Course { input, scene, frames, .. } = self;
         scene.method = runner.method;
         scene.camera = input.scene.camera;
         let camera = &mut scene.camera;
         let turn = DQuat::from_axis_angle(camera.view_up.normalize(), (TURN * f64::from(*frames)).to_radians());
         camera.position = camera.focal_point + turn * (camera.position - camera.focal_point);
+        let (_, sample) = self.frame(runner)?;
+        runner.samples.push(sample);
+        Ok(())
+    }
+
+    /// A frame of the scene as it is, and its stages: the whole, the plan, and those of the picture.
+    fn frame(&self, runner: &Runner) -> Result<(Frame, Vec<Stage>)> {
+        let Course { input, renderer, model, scene, .. } = self;
         let (mut whole, mut plans) = (Stages::default(), Stages::default());
         let frame = progress::during(runner.name, || {
             whole.run(FRAME, || -> Result<Frame> {
-                let plan = plans.run("plan", || Plan::new(scene, &input.mesh, renderer.device()))?;
+                let plan = plans.run("plan", || Plan::new(scene, &input.mesh, runner.device.as_ref()))?;
                 Ok(renderer.render_with(scene, model, &plan, &runner.tables)?)
             })
         })?;
-        runner.samples.push([whole.into_vec(), plans.into_vec(), frame.stages].concat());
-        Ok(())
+        let sample = [whole.into_vec(), plans.into_vec(), frame.stages.clone()].concat();
+        Ok((frame, sample))
     }
 
     /// Times frames of each way in turn, A B A B.
     pub(crate) fn run_in_turn(&mut self, runners: &mut [Runner], runs: usize) -> Result<()> {
-        for round in 0..runs {
-            for runner in runners.iter_mut().filter(|runner| round == 0 || !runner.is_long()) {
+        for _ in 0..runs {
+            for runner in runners.iter_mut().filter(|runner| !runner.is_slow()) {
                 self.run(runner)?;
             }
         }
         Ok(())
     }
 
-    /// What ways cost that are timed in turn, and the first frame of each.
-    pub(crate) fn costs(&mut self, ways: impl IntoIterator<Item = Way>, runs: usize) -> Result<Vec<(Cost, Frame)>> {
+    /// What ways cost that are timed in turn, and the first frame of each; or why one is not measured.
+    pub(crate) fn costs(&mut self, ways: impl IntoIterator<Item = Way>, runs: usize) -> Result<Vec<Measured>> {
         let mut runners = Vec::new();
         let mut frames = Vec::new();
         for way in ways {
-            let (runner, _, frame) = self.start(way)?;
-            runners.push(runner);
-            frames.push(frame);
+            frames.push(match self.refusal(way)? {
+                Some(why) => Err(why),
+                None => {
+                    let (runner, _, frame) = self.start(way)?;
+                    runners.push(runner);
+                    Ok(frame)
+                }
+            });
         }
         self.run_in_turn(&mut runners, runs)?;
-        Ok(runners.iter().map(Runner::cost).zip(frames).collect())
+        let mut costs = runners.iter().map(Runner::cost);
+        let with_cost = |frame: Result<Frame, String>| match frame {
+            Ok(frame) => costs.next().map(|cost| (cost, frame)).ok_or_else(String::new),
+            Err(why) => Err(why),
+        };
+        Ok(frames.into_iter().map(with_cost).collect())
     }
 }
 
+/// What a way costs and its first frame, or why it was not measured.
+pub(crate) type Measured = Result<(Cost, Frame), String>;
+
+/// Processor seconds, or those of the clock where the system does not tell.
+fn taken(stage: &Stage) -> f64 {
+    stage.cpu.unwrap_or(stage.wall)
+}
+
 impl Runner {
-    pub(crate) fn is_long(&self) -> bool {
-        let whole = self.samples.first().and_then(|sample| sample.first());
-        whole.is_some_and(|whole| whole.cpu.unwrap_or(whole.wall) > LONG)
+    /// Whether one frame is enough.
+    pub(crate) fn is_slow(&self) -> bool {
+        self.samples.first().and_then(|sample| sample.first()).is_some_and(|whole| taken(whole) > ONCE)
     }
 
     pub(crate) fn cost(&self) -> Cost {
@@ -160,33 +211,19 @@ impl Cost {
     }
 }
 
-/// The middle value, or the mean of the two in the middle; 0 of none.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    match (values.len(), values.len() / 2) {
-        (0, _) => 0.0,
-        (n, half) if n.is_multiple_of(2) => 0.5 * (values[half - 1] + values[half]),
-        (_, half) => values[half],
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::methods::PEAK;
 
     #[test]
-    fn the_median_is_in_the_middle() {
-        assert_eq!([vec![], vec![3.0], vec![9.0, 1.0], vec![5.0, 1.0, 9.0]].map(median), [0.0, 3.0, 5.0, 5.0]);
-    }
-
-    #[test]
     fn stages_are_told_by_their_medians_and_make_up_most_of_a_frame() {
         let input = PEAK.input("peak", "", 24).unwrap();
         let renderer = Renderer::new();
-        let mut course = Course::new(&input, &renderer);
+        let bench = Bench::new(&renderer);
+        let mut course = Course::new(&input, &bench);
         let cpu: Way = ("cpu", |m| m.backend = tetlux_scene::Backend::Cpu);
-        let (cost, frame) = course.costs([cpu], 3).unwrap().remove(0);
+        let (cost, frame) = course.costs([cpu], 3).unwrap().remove(0).unwrap();
         assert!(frame.image.pixels().iter().any(|p| p[3] > 0.1));
         assert_eq!(cost.frames, 3);
         let names: Vec<_> = cost.stages.iter().map(|stage| stage.name).collect();

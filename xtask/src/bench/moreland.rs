@@ -2,10 +2,11 @@
 //! Visualization and Graphics, 2004): Pentium 4 of 3.2 GHz, Quadro FX 3000, 800 x 800, nine control points.
 
 use anyhow::Result;
+use tetlux_render::Frame;
 use tetlux_scene::{Backend, CellProjection, Classification, Integrator, Interpolation, Method};
 
 use super::Bench;
-use super::measure::{Course, Way};
+use super::measure::{Cost, Course, Measured, Way};
 use super::paper::{BLUNT_FIN, DELTA_WING, DataSet, OXYGEN_POST};
 use super::table::{Cell, Table};
 
@@ -97,7 +98,7 @@ pub(crate) fn growth(bench: &Bench) -> Result<Table> {
             sampled_adaptively(m);
             m.integrator = Integrator::Psi;
         });
-        let (_, plan, frame) = Course::new(&input, bench.renderer).start(adaptive)?;
+        let (_, plan, frame) = Course::new(&input, bench).start(adaptive)?;
         let percent =
             |[before, after]: [usize; 2]| Cell::from(format!("{:.0} %", (after as f64 / before as f64 - 1.0) * 100.0));
         let ours = [plan.cells.len(), frame.resources.cells];
@@ -130,25 +131,30 @@ pub(crate) fn integrators(bench: &Bench) -> Result<Table> {
     rates(bench, "moreland-3", "table 3: ray integration", &INTEGRATORS, INTEGRATOR_RATES.map(|set| set.to_vec()))
 }
 
+/// Frames and thousands of tetrahedra a second, and processor milliseconds.
+fn figures(found: Measured) -> [Cell; 3] {
+    match found {
+        Ok((cost, frame)) => {
+            let rate = frame.resources.cells as f64 / cost.wall_seconds * 1e-3;
+            [(1.0 / cost.wall_seconds).into(), rate.into(), (cost.seconds() * 1e3).into()]
+        }
+        Err(why) => [why.into(), Cell::Unknown, Cell::Unknown],
+    }
+}
+
 fn rates(bench: &Bench, name: &'static str, what: &str, ways: &[Way], theirs: [Vec<[f64; 2]>; 3]) -> Result<Table> {
     let size = bench.paper_size(SIZE);
     let mut rows = Vec::new();
     for (set, theirs) in SETS.iter().zip(theirs) {
         let (input, source) = set.input(bench, size)?;
-        let mut course = Course::new(&input, bench.renderer);
+        let mut course = Course::new(&input, bench);
         let all: Vec<Way> = ways.iter().chain(&OURS).copied().collect();
         let costs = course.costs(all.iter().copied(), bench.runs)?;
-        for (i, (way, (cost, frame))) in all.iter().zip(costs).enumerate() {
+        for (i, (way, found)) in all.iter().zip(costs).enumerate() {
             let rate = theirs.get(i).copied();
-            rows.push(vec![
-                format!("{} ({source})", set.name).into(),
-                way.0.into(),
-                rate.map(|r| r[0]).into(),
-                rate.map(|r| r[1]).into(),
-                (1.0 / cost.wall_seconds).into(),
-                (frame.resources.cells as f64 / cost.wall_seconds * 1e-3).into(),
-                (cost.seconds() * 1e3).into(),
-            ]);
+            let model = format!("{} ({source})", set.name);
+            let theirs = [model.into(), way.0.into(), rate.map(|r| r[0]).into(), rate.map(|r| r[1]).into()];
+            rows.push([theirs.to_vec(), figures(found).to_vec()].concat());
         }
     }
     Ok(Table {
@@ -202,14 +208,15 @@ pub(crate) fn sizes(bench: &Bench) -> Result<Table> {
     let largest = bench.paper_size(SIZE)[0].max(50);
     let sizes: Vec<u32> = all.into_iter().filter(|&side| side <= largest).collect();
     let (input, source) = BLUNT_FIN.input(bench, SIZE)?;
-    let mut course = Course::new(&input, bench.renderer);
+    let mut course = Course::new(&input, bench);
     let all: Vec<Way> = PROJECTIONS.iter().chain(&OURS).copied().collect();
     let theirs = |i: usize| PROJECTION_RATES[0].get(i).map(|rate| rate[1] * 1e-3);
     let mut rows: Vec<Vec<Cell>> = (0..all.len()).map(|i| vec![all[i].0.into(), theirs(i).into()]).collect();
     for &side in &sizes {
         course.scene.size = [side; 2];
-        for (row, (cost, frame)) in rows.iter_mut().zip(course.costs(all.iter().copied(), bench.runs)?) {
-            row.push((frame.resources.cells as f64 / cost.wall_seconds * 1e-6).into());
+        for (row, found) in rows.iter_mut().zip(course.costs(all.iter().copied(), bench.runs)?) {
+            let rate = |(cost, frame): (Cost, Frame)| frame.resources.cells as f64 / cost.wall_seconds * 1e-6;
+            row.push(found.map_or_else(Cell::from, |found| rate(found).into()));
         }
     }
     let head = ["method", "theirs: 800 x 800"].map(String::from).into_iter();

@@ -23,7 +23,9 @@ Every speed has its error beside it. `cargo xtask bench --write-docs` writes thi
 takes the NASA data sets, and with `--peer vtk` VTK's renderers of unstructured meshes draw the same scenes in the same run, a
 frame of each way in turn. Times are medians of whole frames, from planning to the picture, without reading the file and what
 is found once a mesh; the eye moves a little from frame to frame. CPU is user and system time of all threads: on a shared
-machine compare that, and ratios of one run.
+machine compare that, and ratios of one run. What takes more than a processor second is told by one frame, on a software
+adapter its first, compiling included; what takes more than 10 is not asked for more cells and pixels than those, and the page
+says so. What the plan chooses is what it chooses for `cargo xtask render`, by the same calibration of the adapter.
 ";
 
 const QUICK: &str = "
@@ -50,6 +52,9 @@ pub(crate) fn page(results: &Results, folder: &str) -> Page {
     }
     if let Some(scaling) = &results.scaling {
         page.scaling(scaling, folder);
+    }
+    for table in results.skips.iter().chain(&results.budgets) {
+        page.section(&table.title, &table.body());
     }
     if !results.papers.is_empty() {
         page.section("The papers' tables", "`cargo xtask bench --paper NAME` prints them.\n");
@@ -133,7 +138,8 @@ impl Page {
         let cells = |point: &super::scaling::MeshPoint| point.cells as f64;
         self.section(
             "Growth",
-            "The built-in scene on meshes of more and more cells, and in pictures of more and more pixels.\n",
+            "The built-in scene on meshes of more and more cells, and in pictures of more and more pixels; ways by wgpu up to \
+             what takes them a processor second.\n",
         );
         let curves = |points: &mut dyn Iterator<Item = (f64, &Vec<Grown>)>, value: fn(&Grown) -> Option<f64>| {
             let mut curves: Vec<Curve> = Vec::new();
@@ -177,11 +183,24 @@ impl Page {
             let ways = names.iter().map(|name| format!("{name}, CPU ms"));
             first.iter().map(|name| (*name).to_owned()).chain(ways).collect()
         };
+        // Bytes a cell of the device, of ways that take some.
+        let on_device = |way: &Grown| way.device_bytes > 0;
+        let all_ways = || scaling.cells.iter().flat_map(|point| &point.ways);
+        let devices: Vec<&str> =
+            names.iter().copied().filter(|name| all_ways().any(|way| way.name == *name && on_device(way))).collect();
         let rows = scaling.cells.iter().map(|point| {
-            let bytes = number((point.mesh_bytes as f64 / cells(point)).round());
-            [vec![point.cells.to_string(), number(point.assemble_wall_seconds * 1e3), bytes], of(&point.ways)].concat()
+            let a_cell = |bytes: f64| number((bytes / cells(point)).round());
+            let ready =
+                [point.cells.to_string(), number(point.assemble_wall_seconds * 1e3), a_cell(point.mesh_bytes as f64)];
+            let device = devices.iter().map(|name| {
+                let way = point.ways.iter().find(|way| way.name == *name && on_device(way));
+                way.map_or("-".to_owned(), |way| a_cell(way.device_bytes as f64))
+            });
+            [ready.to_vec(), of(&point.ways), device.collect()].concat()
         });
-        let table = markdown(&head(&["cells", "mesh ready, wall ms", "mesh, bytes a cell"]), rows);
+        let mut titles = head(&["cells", "mesh ready, wall ms", "mesh, bytes a cell"]);
+        titles.extend(devices.iter().map(|name| format!("{name}, device bytes a cell")));
+        let table = markdown(&titles, rows);
         let _ = write!(self.markdown, "\n{table}");
         let rows = scaling.pixels.iter().map(|p| [vec![format!("{0} x {0}", p.side)], of(&p.ways)].concat());
         let table = markdown(&head(&["picture"]), rows);

@@ -59,6 +59,7 @@ impl DataSet {
 
     /// The data set with nine control points, in a picture of that size, and what stands for it.
     pub(crate) fn input(&self, bench: &Bench, size: [u32; 2]) -> Result<(Input, &'static str)> {
+        bench.tell(self.name);
         let found = self.file.and_then(|(stem, scene)| Some((bench.data.find(stem)?, scene)));
         let flags = |size| SceneArgs { size: Some(size), ..SceneArgs::default() };
         if let Some((source, scene)) = found {

@@ -2,22 +2,26 @@
 
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use serde::Serialize;
 use tetlux_image::{Image, Metrics, compare};
-use tetlux_render::Resources;
+use tetlux_render::{Instructions, Renderer, Resources};
 use tetlux_scene::{Backend, CellProjection, Integrator, Interpolation, Order, Plan, TablePrecision, Target};
 
 use super::Bench;
 use super::front::front;
-use super::measure::{Cost, Course, LONG, Runner, TURN, Way, median};
+use super::measure::{Cost, Course, Runner, TURN, Way};
+use super::patience::ONCE;
 use super::peer::{About, Peer, Rival, Took, VTK, read_ppm, write_job};
 use crate::input::Input;
-use crate::memory;
-use crate::{progress, truth};
+use crate::report::median;
+use crate::{memory, progress, truth};
 
 /// What the plan chooses comes first: targets are for it.
 pub(crate) const DEFAULT: &str = "default";
+
+/// The processor by narrower vectors than the best, where those are AVX-512.
+pub(crate) const AVX2: Way = ("CPU, AVX2", |m| m.backend = Backend::Cpu);
 
 const WAYS: &[Way] = &[
     (DEFAULT, |_| ()),
@@ -26,6 +30,7 @@ const WAYS: &[Way] = &[
     ("CPU, order centroid", |m| (m.backend, m.order) = (Backend::Cpu, Order::Centroid)),
     ("CPU, average", |m| (m.backend, m.integrator) = (Backend::Cpu, Integrator::Average)),
     ("wgpu, march", |m| (m.backend, m.projection) = (Backend::Gpu, CellProjection::March)),
+    ("wgpu, tiles", |m| (m.backend, m.projection) = (Backend::Gpu, CellProjection::Tiles)),
     ("wgpu, pt", |m| (m.backend, m.projection) = (Backend::Gpu, CellProjection::Pt)),
     ("wgpu, balanced", |m| (m.backend, m.projection) = (Backend::Gpu, CellProjection::Balanced)),
     ("wgpu, pt, order centroid, rgba16f", |m| {
@@ -39,7 +44,7 @@ const WAYS: &[Way] = &[
 ];
 
 /// As many as a quick run takes.
-const QUICK_WAYS: usize = 7;
+const QUICK_WAYS: usize = 8;
 
 /// What was found of a scene.
 #[derive(Serialize)]
@@ -100,24 +105,36 @@ pub(crate) fn race(bench: &Bench, input: &Input, python: Option<&str>, folder: &
     let budget = input.scene.method.max_error;
     let truth = truth::image(input, &view, [0.0; 2])?;
     let mut refused = Vec::new();
-    let mut course = Course::new(input, bench.renderer);
+    let mut course = Course::new(input, bench);
     let mut ours: Vec<Started> = Vec::new();
-    let ways = if bench.quick { &WAYS[..QUICK_WAYS] } else { WAYS };
-    for way in ways {
+    let start = |course: &mut Course, way: Way| -> Result<Started> {
+        if let Some(why) = course.refusal(way)? {
+            bail!(why);
+        }
         memory::forget_peak();
-        match course.start(*way) {
-            Ok((runner, plan, frame)) => {
-                let peak_bytes = memory::peak();
-                let error = compare(&truth, &frame.image, budget)?;
-                let method = in_full(&plan);
-                // What the default is may come again by its own name.
-                if ours.iter().all(|known| known.method != method) {
-                    let resources = frame.resources;
-                    ours.push(Started { runner, method, backend: plan.backend, resources, error, peak_bytes });
-                }
-            }
+        let (runner, plan, frame) = course.start(way)?;
+        let peak_bytes = memory::peak();
+        let error = compare(&truth, &frame.image, budget)?;
+        let (method, resources) = (in_full(&plan), frame.resources);
+        Ok(Started { runner, method, backend: plan.backend, resources, error, peak_bytes })
+    };
+    let ways = if bench.quick { &WAYS[..QUICK_WAYS] } else { WAYS };
+    for &way in ways {
+        match start(&mut course, way) {
+            // What the default is may come again by its own name.
+            Ok(started) if ours.iter().any(|known| known.method == started.method) => {}
+            Ok(started) => ours.push(started),
             Err(error) => refused.push([way.0.to_owned(), error.to_string()]),
         }
+    }
+    let narrow = Instructions::all().into_iter().skip(1).find(|set| set.name() == "AVX2");
+    let narrow = narrow.map(|set| Renderer::new().with_instructions(set));
+    let mut narrow_course = narrow.as_ref().map(|renderer| Course::by(input, bench, renderer));
+    let mut narrow = None;
+    match narrow_course.as_mut().map(|course| start(course, AVX2)) {
+        Some(Ok(started)) => narrow = Some(Started { method: format!("{}, by AVX2 alone", started.method), ..started }),
+        Some(Err(error)) => refused.push([AVX2.0.to_owned(), error.to_string()]),
+        None => {}
     }
     let mut theirs = None;
     if let Some(python) = python {
@@ -128,24 +145,30 @@ pub(crate) fn race(bench: &Bench, input: &Input, python: Option<&str>, folder: &
         }
     }
     for round in 0..bench.runs {
-        for Started { runner, .. } in ours.iter_mut().filter(|ours| round == 0 || !ours.runner.is_long()) {
+        for Started { runner, .. } in ours.iter_mut().filter(|ours| !ours.runner.is_slow()) {
+            course.run(runner)?;
+        }
+        if let (Some(Started { runner, .. }), Some(course)) = (&mut narrow, &mut narrow_course)
+            && !runner.is_slow()
+        {
             course.run(runner)?;
         }
         if let Some(theirs) = &mut theirs {
             theirs.run(round)?;
         }
     }
-    let ours = ours.into_iter().map(|Started { runner, method, backend, resources, error, peak_bytes }| Entry {
-        name: runner.name.to_owned(),
-        method,
-        cost: runner.cost(),
-        error,
-        cells_drawn: Some(resources.cells),
-        device_bytes: (backend == Backend::Gpu).then_some(resources.bytes),
-        peak_bytes,
-        on_front: false,
-        rival: None,
-    });
+    let ours =
+        ours.into_iter().chain(narrow).map(|Started { runner, method, backend, resources, error, peak_bytes }| Entry {
+            name: runner.name.to_owned(),
+            method,
+            cost: runner.cost(),
+            error,
+            cells_drawn: Some(resources.cells),
+            device_bytes: (backend == Backend::Gpu).then_some(resources.bytes),
+            peak_bytes,
+            on_front: false,
+            rival: None,
+        });
     let mut entries: Vec<Entry> = ours.collect();
     let peer = theirs.as_ref().map(|theirs| theirs.peer.about.clone());
     entries.extend(theirs.into_iter().flat_map(Rivals::entries));
@@ -217,7 +240,7 @@ impl Rivals {
 
     fn run(&mut self, round: usize) -> Result<()> {
         for (rival, _, _, samples) in &mut self.started {
-            if round > 0 && samples.first().is_some_and(|took| took.cpu_seconds > LONG) {
+            if round > 0 && samples.first().is_some_and(|took| took.cpu_seconds > ONCE) {
                 continue;
             }
             self.frames += 1;
@@ -262,7 +285,7 @@ mod tests {
 
     #[test]
     fn every_way_has_a_name_of_its_own_and_can_be() {
-        for (i, (name, change)) in WAYS.iter().enumerate() {
+        for (i, (name, change)) in WAYS.iter().chain([&AVX2]).enumerate() {
             assert!(WAYS[..i].iter().all(|(other, _)| other != name), "{name}");
             let mut method = Method::default();
             change(&mut method);

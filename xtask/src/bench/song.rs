@@ -65,17 +65,23 @@ fn by_widgets(Input { name, mesh, scene, .. }: Input) -> Result<Input> {
     Ok(input)
 }
 
-/// Seconds and processor seconds of a frame, and the largest and the mean error of a small picture against the reference.
-fn measure(bench: &Bench, input: &Input, ways: &[Way]) -> Result<Vec<[f64; 4]>> {
-    let mut course = Course::new(input, bench.renderer);
+/// Seconds and processor seconds of a frame, and the largest and the mean error of a small picture against the reference; or
+/// why a way is not measured.
+fn measure(bench: &Bench, input: &Input, ways: &[Way]) -> Result<Vec<Result<[f64; 4], String>>> {
+    let mut course = Course::new(input, bench);
     let costs = course.costs(ways.iter().copied(), bench.runs)?;
     course.scene.size = input.scene.size.map(|side| side.min(COMPARED));
     let truth = truth::image(input, &input.scene.camera.view(course.scene.size)?, [0.0; 2])?;
     let mut found = Vec::new();
-    for (way, (cost, _)) in ways.iter().zip(costs) {
-        let (_, _, frame) = course.start(*way)?;
-        let error = compare(&truth, &frame.image, input.scene.method.max_error)?;
-        found.push([cost.wall_seconds, cost.seconds(), error.max, error.mean]);
+    for (way, cost) in ways.iter().zip(costs) {
+        found.push(match cost {
+            Ok((cost, _)) => {
+                let (_, _, frame) = course.start(*way)?;
+                let error = compare(&truth, &frame.image, input.scene.method.max_error)?;
+                Ok([cost.wall_seconds, cost.seconds(), error.max, error.mean])
+            }
+            Err(why) => Err(why),
+        });
     }
     Ok(found)
 }
@@ -90,20 +96,19 @@ pub(crate) fn modes(bench: &Bench) -> Result<Table> {
         let count = one.mesh.cells().len();
         let mut found = measure(bench, &one, &[ONE])?;
         found.extend(measure(bench, &by_widgets(one)?, &TWO)?);
-        let base = found[0][1];
-        for (i, ((mode, _), [wall, cpu, max, mean])) in [ONE].iter().chain(&TWO).zip(found).enumerate() {
+        let base = found.first().and_then(|one| one.as_ref().ok()).map(|one| one[1]);
+        for (i, ((mode, _), found)) in [ONE].iter().chain(&TWO).zip(found).enumerate() {
             let rate = theirs.get(i).copied();
-            rows.push(vec![
-                format!("{name} ({source}, {count} cells)").into(),
-                (*mode).into(),
-                rate.into(),
-                rate.map(|rate| theirs[0] / rate).into(),
-                Cell::from(wall),
-                cpu.into(),
-                (cpu / base).into(),
-                max.into(),
-                mean.into(),
-            ]);
+            let set = format!("{name} ({source}, {count} cells)");
+            let published: [Cell; 4] =
+                [set.into(), (*mode).into(), rate.into(), rate.map(|rate| theirs[0] / rate).into()];
+            let ours: [Cell; 5] = match found {
+                Ok([wall, cpu, max, mean]) => {
+                    [wall.into(), cpu.into(), base.map(|base| cpu / base).into(), max.into(), mean.into()]
+                }
+                Err(why) => [why.into(), Cell::Unknown, Cell::Unknown, Cell::Unknown, Cell::Unknown],
+            };
+            rows.push([published.to_vec(), ours.to_vec()].concat());
         }
     }
     let head = [

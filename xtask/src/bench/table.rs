@@ -102,9 +102,14 @@ impl Table {
 
     /// The same in Markdown.
     pub(crate) fn markdown(&self) -> String {
+        format!("### {}\n\n{}", self.title, self.body())
+    }
+
+    /// The same without its title.
+    pub(crate) fn body(&self) -> String {
         let rows = self.rows.iter().map(|row| row.iter().map(Cell::to_string).collect());
-        let notes: String = self.notes.iter().map(|note| format!("\n{note}\n")).collect();
-        format!("### {}\n{notes}\n{}", self.title, markdown(&self.head, rows))
+        let notes: String = self.notes.iter().map(|note| format!("{note}\n\n")).collect();
+        format!("{notes}{}", markdown(&self.head, rows))
     }
 }
 

@@ -12,6 +12,7 @@ use crate::input::Input;
 const FIELD: &str = "s";
 
 /// A mesh with a function of the position, how it glows, and from where it is seen.
+#[derive(Clone, Copy)]
 pub(crate) struct Setting {
     pub(crate) mesh: fn() -> Parts,
     pub(crate) field: fn(DVec3) -> f64,

@@ -7,7 +7,6 @@ use tetlux_scene::{
 };
 
 use super::*;
-use crate::tiles::Room;
 use crate::{Frame, Model, Renderer};
 
 fn mesh() -> TetMesh {
@@ -32,7 +31,7 @@ fn scene(mesh: &TetMesh, method: Method) -> Scene {
 fn restricted(features: wgpu::Features, restrict: impl FnOnce(&mut wgpu::Limits)) -> Renderer {
     let Gpu { adapter, mut limits, .. } = Gpu::find().unwrap();
     restrict(&mut limits);
-    Renderer { gpu: Some(Gpu::new(adapter, features, limits)), orderer: Mutex::default(), room: Room::default() }
+    Renderer { gpu: Some(Gpu::new(adapter, features, limits)), ..Renderer::new() }
 }
 
 fn planned(renderer: &Renderer, mesh: &TetMesh, method: Method) -> (Scene, Plan) {
@@ -106,6 +105,34 @@ fn a_mesh_of_more_than_a_binding_is_drawn_in_batches() {
         let [one, batches] = [&whole, &small].map(|renderer| render(renderer, &mesh, method).unwrap());
         assert_eq!(one.image, batches.image, "{projection}");
         assert!(batches.resources.buffers > one.resources.buffers, "{projection}: a buffer a batch");
+    }
+}
+
+/// A cell's share of 2 GiB where there are 8 million.
+const SHARE: u64 = (2 << 30) / 8_000_000;
+
+#[test]
+fn every_cell_keeps_to_its_share_of_two_gibibytes() {
+    let parts = cuboid([16, 16, 12], Split::Six, [[-1.0; 3].into(), [1.0; 3].into()]);
+    let field = parts.sample(|p| (2.0 * p.x).sin() + p.y * p.z);
+    let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![Field::point("s", 1, field)]).unwrap();
+    let cells = mesh.cells().len() as u64;
+    // No buffer is larger than the cells themselves: what is projected comes in batches.
+    let binding = 16 * cells;
+    let small = restricted(FEATURES, |limits| limits.max_storage_buffer_binding_size = binding);
+    assert!(cells * variant::CELL_BYTES > 4 * binding);
+    for projection in [
+        CellProjection::Pt,
+        CellProjection::Gator,
+        CellProjection::Vicp,
+        CellProjection::Balanced,
+        CellProjection::March,
+        CellProjection::Tiles,
+    ] {
+        let bytes = render(&small, &mesh, Method { projection, ..Method::default() }).unwrap().resources.bytes;
+        println!("{projection}: {} bytes a cell", bytes / cells);
+        // Cells and points at the least.
+        assert!((20 * cells..=SHARE * cells).contains(&bytes), "{projection}: {} bytes a cell", bytes / cells);
     }
 }
 

@@ -16,6 +16,7 @@ use crate::cell::Kind;
 use crate::device_mesh::{DeviceMesh, NEGATIVE};
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
+use crate::instructions::Instructions;
 use crate::lens::Lens;
 use crate::opaque;
 
@@ -85,7 +86,7 @@ impl Drawing {
             kept: SkipSet::default(),
             size: self.view.size,
         };
-        draw_on(level, &job, &mut Vec::new(), &mut Stages::default()).0
+        draw(level, &job, &Room::default(), &mut Stages::default()).0
     }
 
     /// Every pixel sorted.
@@ -220,13 +221,7 @@ fn difference<T: Copy + Into<f64>>(a: &[[f32; 4]], b: &[[T; 4]]) -> f64 {
 
 /// The instruction sets that this processor has.
 fn levels() -> Vec<Level> {
-    let mut levels = vec![Level::new(), Level::baseline()];
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        levels.extend(Level::new().as_sse4_2().map(|simd| simd.level()));
-        levels.extend(Level::new().as_avx2().map(|simd| simd.level()));
-    }
-    levels
+    Instructions::all().into_iter().map(|instructions| instructions.0).collect()
 }
 
 #[test]
