@@ -1,6 +1,7 @@
 //! Adaptive quadrature of the emission-absorption integral along the segments of a ray.
 
 use glam::DVec3;
+use tetlux_optics::NoData;
 
 use crate::definition::{Definition, Inside, Sight};
 use crate::rule::Rule;
@@ -76,6 +77,12 @@ impl<'a> Integrator<'a> {
     pub(crate) fn new(definition: Definition<'a>, tolerance: f64) -> Self {
         let brightest = definition.brightest();
         Self { definition, brightest, tolerance, rules: (Rule::new(), Rule::new(), Rule::new()) }
+    }
+
+    /// The same with cells without data seen.
+    pub(crate) fn with_no_data(mut self, no_data: NoData) -> Self {
+        self.definition.no_data = no_data;
+        Self::new(self.definition, self.tolerance)
     }
 
     /// How a ray of this direction sees.

@@ -1,9 +1,10 @@
 //! Bytes that a picture does without.
 
-use tetlux_mesh::{Location, TetMesh};
+use tetlux_mesh::TetMesh;
 use tetlux_scene::{Backend, Fate, Plan, Scene, Skip, SkipLine};
 use tetlux_tables::TableSpec;
 
+use crate::device_mesh::Data;
 use crate::gpu::variant::Variant;
 use crate::tiles::CELL_BYTES;
 
@@ -13,10 +14,10 @@ pub fn bytes_saved(scene: &Scene, mesh: &TetMesh, plan: &Plan, line: &SkipLine) 
         return 0;
     }
     let gpu = plan.backend == Backend::Gpu;
-    let on_cells = scene.scalar.location == Location::Cell;
+    let data = Data::of(&scene.scalar, &scene.seen_without_data());
     let of_mesh = |points: u64, cells: u64| points * mesh.points().len() as u64 + cells * mesh.cells().len() as u64;
     // Projected and listed in the order.
-    let cell = if gpu { Variant::new(plan, on_cells, None, false).geometry().bytes + 4 } else { CELL_BYTES + 4 };
+    let cell = if gpu { Variant::new(plan, data, None, false).geometry().bytes + 4 } else { CELL_BYTES + 4 };
     match line.skip {
         Skip::Transparent | Skip::Faint | Skip::Outside => line.cells as u64 * cell,
         Skip::Order => of_mesh(0, 4),
@@ -24,7 +25,7 @@ pub fn bytes_saved(scene: &Scene, mesh: &TetMesh, plan: &Plan, line: &SkipLine) 
         Skip::Gradients => of_mesh(24, 0),
         // The default table.
         Skip::Tables => 4 * TableSpec::default_q().size.map(u64::from).iter().product::<u64>(),
-        Skip::Uploads => of_mesh(16, if on_cells { 20 } else { 16 }),
+        Skip::Uploads => of_mesh(16, if data == Data::Point { 16 } else { 20 }),
         _ => 0,
     }
 }

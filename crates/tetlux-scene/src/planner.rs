@@ -60,7 +60,7 @@ enum Sight {
 /// Cells that are not drawn, by the first reason that holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Skips {
-    /// A vertex has no finite value: nothing can be classified.
+    /// A vertex has no finite value, and what is without data is not seen.
     pub no_data: usize,
     /// Opacity is zero on the cell's whole scalar range; with an emphasis, at its four vertices.
     pub transparent: usize,
@@ -168,12 +168,13 @@ impl<'a> Planner<'a> {
             let g = second.map_or([0.0; 2], |second| second.cells[cell]);
             let missing = s[0].is_nan() || g[0].is_nan();
             let transparent = |threshold: usize| match (&dark, &touched) {
+                _ if missing => !scene.no_data.is_visible(),
                 _ if colors.is_some() => self.mesh.cells()[cell].iter().all(clear),
                 (Some(dark), _) => within(&dark[threshold], s),
                 (None, Some(touched)) => !touched[cell],
                 (None, None) => !scene.classification.is_visible_over(&Rectangle { s, g }),
             };
-            let counted = if missing {
+            let counted = if missing && transparent(0) {
                 &mut skips.no_data
             } else if drop_transparent && transparent(0) {
                 &mut skips.transparent

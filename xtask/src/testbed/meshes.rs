@@ -38,6 +38,7 @@ impl Setting {
         let scene = Scene {
             scalar: mesh.scalar(FIELD, Component::Magnitude)?,
             second: None,
+            no_data: tetlux_optics::NoData::default(),
             classification: tetlux_optics::Classification::OneField(transfer),
             lighting: None,
             emphasis: None,

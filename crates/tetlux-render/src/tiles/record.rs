@@ -13,7 +13,7 @@
 use fearless_simd::{Level, Select, Simd, SimdBase, dispatch};
 use glam::DVec3;
 use rayon::prelude::*;
-use tetlux_mesh::ScalarField;
+use tetlux_mesh::{Location, ScalarField};
 use tetlux_optics::transfer_f32::{Piece, piece_at};
 
 use crate::device_mesh::{DeviceMesh, NEGATIVE, normalised};
@@ -95,7 +95,7 @@ pub(crate) const STEEPEST: f64 = 1e20;
 pub(crate) fn points(mesh: &DeviceMesh, scalar: &ScalarField, eye: &EyeSpace) -> Vec<Point> {
     let point = |(i, &[x, y, z, _]): (usize, &[f32; 4])| {
         let frame = eye.frame(DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
-        let scalar = if mesh.cell_scalars.is_empty() { normalised(scalar, scalar.values[i]) } else { 0.0 };
+        let scalar = if scalar.location == Location::Point { normalised(scalar, scalar.values[i]) } else { 0.0 };
         Point { frame, pixel: eye.pixel_of(frame + eye.offset).map(|p| p as f32), scalar }
     };
     mesh.points.par_iter().enumerate().map(point).collect()
@@ -321,8 +321,8 @@ impl SetUp<'_> {
     #[inline(always)]
     fn classify(&self, cell: u32, points: [&Point; 4], record: &mut Record) {
         let s = points.map(|p| p.scalar as f32);
-        let (least, most) = match self.mesh.cell_scalars.get(cell as usize) {
-            Some(&s) => (s, s),
+        let (least, most) = match self.mesh.own_scalar(cell) {
+            Some(s) => (s, s),
             None => (s[0].min(s[1]).min(s[2].min(s[3])), s[0].max(s[1]).max(s[2].max(s[3]))),
         };
         (record.base, record.range) = (least, most - least);
