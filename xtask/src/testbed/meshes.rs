@@ -9,7 +9,8 @@ use tetlux_scene::{Camera, Method, Projection, Scene};
 
 use crate::input::Input;
 
-const FIELD: &str = "s";
+/// The name of the field that meshes get here.
+pub(crate) const FIELD: &str = "s";
 
 /// A mesh with a function of the position, how it glows, and from where it is seen.
 pub(crate) struct Setting {
@@ -29,19 +30,11 @@ pub(crate) struct Setting {
 impl Setting {
     pub(crate) fn input(&self, name: &str, title: &str, side: u32) -> Result<Input> {
         let parts = (self.mesh)();
-        let field = Field::point(FIELD, 1, parts.sample(self.field));
-        let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![field]).context("a procedural mesh")?;
-        let transfer = TransferFunction::new(
-            self.color.iter().map(|&[s, r, g, b]| ColorNode { s, rgb: [r, g, b] }).collect(),
-            self.opacity.iter().map(|&[s, opacity]| OpacityNode { s, opacity }).collect(),
-        )?;
-        let scene = Scene {
-            scalar: mesh.scalar(FIELD, Component::Magnitude)?,
-            second: None,
-            classification: tetlux_optics::Classification::OneField(transfer),
-            lighting: None,
-            emphasis: None,
-            surfaces: Vec::new(),
+        let field = parts.sample(self.field);
+        let specimen = Specimen {
+            parts,
+            field: Field::point(FIELD, 1, field),
+            transfer: transfer(self.color, self.opacity)?,
             unit_distance: self.unit_distance,
             camera: Camera {
                 position: self.eye.into(),
@@ -51,6 +44,44 @@ impl Setting {
                 near: 0.0,
             },
             size: [side; 2],
+        };
+        specimen.input(name, title)
+    }
+}
+
+/// A transfer function of (scalar, red, green, blue) and (scalar, opacity).
+pub(crate) fn transfer(color: &[[f64; 4]], opacity: &[[f64; 2]]) -> Result<TransferFunction> {
+    Ok(TransferFunction::new(
+        color.iter().map(|&[s, r, g, b]| ColorNode { s, rgb: [r, g, b] }).collect(),
+        opacity.iter().map(|&[s, opacity]| OpacityNode { s, opacity }).collect(),
+    )?)
+}
+
+/// A mesh that a program made, with one field, and how it is seen.
+pub(crate) struct Specimen {
+    pub(crate) parts: Parts,
+    pub(crate) field: Field,
+    pub(crate) transfer: TransferFunction,
+    pub(crate) unit_distance: f64,
+    pub(crate) camera: Camera,
+    pub(crate) size: [u32; 2],
+}
+
+impl Specimen {
+    pub(crate) fn input(self, name: &str, title: &str) -> Result<Input> {
+        let Specimen { parts, field, transfer, unit_distance, camera, size } = self;
+        let field_name = field.name.clone();
+        let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![field]).context("a procedural mesh")?;
+        let scene = Scene {
+            scalar: mesh.scalar(&field_name, Component::Magnitude)?,
+            second: None,
+            classification: tetlux_optics::Classification::OneField(transfer),
+            lighting: None,
+            emphasis: None,
+            surfaces: Vec::new(),
+            unit_distance,
+            camera,
+            size,
             background: [0.0; 3],
             method: Method::default(),
         };
