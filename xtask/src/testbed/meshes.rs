@@ -107,18 +107,24 @@ pub(crate) fn long_cells() -> Parts {
     cuboid([1, 20, 20], Split::Six, [DVec3::NEG_ONE, DVec3::ONE])
 }
 
-/// Spacing in the middle of the graded cube over that at its surface.
-const GRADING: f64 = 1e-5;
-/// The cube from -1 to 1, its spacings growing from the middle outwards by the same factor each: edges from 1e-5 to 1.
-/// There are so many hexahedra from its middle to its surface.
-pub(crate) fn graded(count: usize) -> Parts {
+/// The cube from -1 to 1, its spacings growing from the middle outwards by the same factor each: edges from `grading` to
+/// about 1. There are so many hexahedra from its middle to its surface.
+pub(crate) fn graded_from(grading: f64, count: usize) -> Parts {
     let half = count as f64;
     let place = |u: f64| {
         let steps = ((2.0 * u - 1.0) * half).round();
-        let growth = GRADING.powf(-1.0 / (half - 1.0).max(1.0));
+        let growth = grading.powf(-1.0 / (half - 1.0).max(1.0));
         steps.signum() * (growth.powf(steps.abs()) - 1.0) / (growth.powf(half) - 1.0)
     };
     grid([2 * count; 3], Split::Six, |u| DVec3::new(place(u.x), place(u.y), place(u.z)))
+}
+
+/// Spacing in the middle of the graded cube over that at its surface.
+const GRADING: f64 = 1e-5;
+
+/// The graded cube of edges from 1e-5 to 1.
+pub(crate) fn graded(count: usize) -> Parts {
+    graded_from(GRADING, count)
 }
 
 /// One of 48 000 cells.
@@ -128,5 +134,10 @@ pub(crate) fn graded_cube() -> Parts {
 
 /// The distance from the middle on a logarithmic scale: 0 there, 1 at distance 1.
 pub(crate) fn log_radius(p: DVec3) -> f64 {
-    (p.length() / GRADING).ln_1p() / GRADING.recip().ln_1p()
+    log_radius_from(GRADING, p)
+}
+
+/// The same where it begins at another length.
+pub(crate) fn log_radius_from(grading: f64, p: DVec3) -> f64 {
+    (p.length() / grading).ln_1p() / grading.recip().ln_1p()
 }
