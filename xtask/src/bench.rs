@@ -11,7 +11,7 @@ mod peer;
 mod race;
 mod scaling;
 mod song;
-mod table;
+pub(crate) mod table;
 mod targets;
 
 use std::path::{Path, PathBuf};

@@ -67,7 +67,7 @@ impl<'a> Course<'a> {
         self.scene.method = method;
         self.scene.camera = self.input.scene.camera;
         let plan = Plan::new(&self.scene, &self.input.mesh, self.renderer.device())?;
-        let tables = tables::load_or_build(self.input, &plan)?;
+        let tables = tables::load_or_build(self.input, &plan, &mut Vec::new())?;
         let draw = || self.renderer.render_with(&self.scene, &self.model, &plan, &tables);
         let frame = progress::during(name, draw)?;
         Ok((Runner { name, method, tables, samples: Vec::new() }, plan, frame))
