@@ -21,6 +21,8 @@ macro_rules! cases {
     };
 }
 
+pub(super) use cases;
+
 pub(crate) const CASES: &[Case] = cases! {
     "cube", "nothing: what the others are measured by", cells::cube;
     "flat-cells", "layers 1e-12 to 1 thick across a box 2 wide", cells::flat;
@@ -62,11 +64,12 @@ pub(crate) const CASES: &[Case] = cases! {
 };
 
 /// Colours and opacities over 0 to 1 that tell orders, ends and places of segments apart.
-const COLOR: [[f64; 4]; 4] = [[0.0, 1.0, 0.6, 0.1], [0.35, 0.9, 0.2, 0.3], [0.7, 0.1, 0.5, 1.0], [1.0, 0.2, 1.0, 0.4]];
-const OPACITY: [[f64; 2]; 5] = [[0.0, 0.4], [0.3, 1.6], [0.45, 0.1], [0.7, 2.0], [1.0, 0.6]];
+pub(super) const COLOR: [[f64; 4]; 4] =
+    [[0.0, 1.0, 0.6, 0.1], [0.35, 0.9, 0.2, 0.3], [0.7, 0.1, 0.5, 1.0], [1.0, 0.2, 1.0, 0.4]];
+pub(super) const OPACITY: [[f64; 2]; 5] = [[0.0, 0.4], [0.3, 1.6], [0.45, 0.1], [0.7, 2.0], [1.0, 0.6]];
 
 /// A mesh with a field between 0 and 1, seen in these.
-fn specimen(parts: Parts, field: impl FnMut(DVec3) -> f64, camera: Camera, short: bool) -> Result<Specimen> {
+pub(super) fn specimen(parts: Parts, field: impl FnMut(DVec3) -> f64, camera: Camera, short: bool) -> Result<Specimen> {
     Ok(Specimen {
         field: Field::point(FIELD, 1, parts.sample(field)),
         parts,
@@ -89,7 +92,7 @@ fn camera(position: DVec3, focal_point: DVec3, projection: Projection) -> Camera
     Camera { position, focal_point, view_up, projection, near: 0.0 }
 }
 
-fn perspective(position: DVec3, focal_point: DVec3, view_angle: f64) -> Camera {
+pub(super) fn perspective(position: DVec3, focal_point: DVec3, view_angle: f64) -> Camera {
     camera(position, focal_point, Projection::Perspective { view_angle })
 }
 
@@ -98,6 +101,6 @@ fn orthographic(position: DVec3, focal_point: DVec3, parallel_scale: f64) -> Cam
 }
 
 /// So many cells a side in full, or in short.
-fn count(short: bool, full: usize, few: usize) -> usize {
+pub(super) fn count(short: bool, full: usize, few: usize) -> usize {
     if short { few } else { full }
 }
