@@ -301,7 +301,11 @@ pub(crate) fn spend(scene: &Scene, measures: &Measures, backend: Backend) -> Spe
     };
     if scene.method.order == Order::Auto && !off.contains(Skip::Order) {
         let (depth, spread) = depth_and_spread(scene, measures);
-        spending.order = afford(of_wrong_order(depth, spread));
+        let error = of_wrong_order(depth, spread);
+        // Of a volume that is hardly seen it must be as small a share of what is seen.
+        if error <= LARGEST_SHARE * budget * -(-depth).exp_m1() {
+            spending.order = afford(error);
+        }
     }
     if scene.method.integrator == Integrator::Auto && scene.method.classification == Classification::Auto {
         spending.average = afford(0.5 * spread_within_cells(transfer, measures.widest));

@@ -34,7 +34,7 @@ pub(crate) const CASES: &[Case] = cases! {
     "range-1e30", "a field from -1e30 to 1e30", |short| values(short, |u| 2e30 * (u - 0.5), [-1e30, 1e30]);
     "range-on-1e9", "a field from 1e9 to 1e9 + 1", |short| values(short, |u| 1e9 + u, [1e9, 1e9 + 1.0]);
     "range-subnormal", "a field from 0 to 1e-310", |short| values(short, |u| 1e-310 * u, [0.0, 1e-310]);
-    "range-widest", "a field over all of double precision", |short| values(short, |u| 3.4e308 * (u - 0.5), [-8e307, 8e307]);
+    "range-widest", "a field over all of double precision", |short| values(short, |u| 1.7e308 * (2.0 * u - 1.0), [-8e307, 8e307]);
     "no-data-points", "NaN and infinities at one point in 50, in a colour of their own", |short| no_data(short, false, 0.8);
     "no-data-cells", "NaN and infinities in one cell in 20, in a colour of their own", |short| no_data(short, true, 0.8);
     "no-data-left-out", "NaN and infinities at one point in 50, left out", |short| no_data(short, false, 0.0);
