@@ -62,6 +62,7 @@ pub fn scene(mesh: &TetMesh, smooth: bool, method: Method) -> Scene {
     Scene {
         scalar: mesh.scalar("waves", Component::Magnitude).unwrap_or_else(|e| panic!("the cube has the field: {e}")),
         second: None,
+        no_data: tetlux_optics::NoData::default(),
         classification: Classification::OneField(transfer(smooth)),
         lighting: None,
         emphasis: None,

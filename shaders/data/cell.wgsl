@@ -2,7 +2,14 @@
 @group(0) @binding(4) var<storage, read> cell_scalars: array<f32>;
 
 // Whether a scalar is the same throughout a cell.
-const CELLWISE = true;
+fn has_own(cell: u32) -> bool {
+    return true;
+}
+
+// The scalar throughout such a cell.
+fn own_scalar(cell: u32) -> f32 {
+    return cell_scalars[cell];
+}
 
 // The scalars of a cell at its vertices.
 fn scalars_of(cell: u32, names: vec4<u32>) -> vec4<f32> {

@@ -2,7 +2,14 @@
 import package::lib::mesh_buffers::{points};
 
 // Whether a scalar is the same throughout a cell.
-const CELLWISE = false;
+fn has_own(cell: u32) -> bool {
+    return false;
+}
+
+// The scalar throughout such a cell.
+fn own_scalar(cell: u32) -> f32 {
+    return 0.0;
+}
 
 // The scalars of a cell at its vertices.
 fn scalars_of(cell: u32, names: vec4<u32>) -> vec4<f32> {

@@ -25,6 +25,8 @@ struct Look {
     emission: f32,
     unit: f32,
     unused: vec2<f32>,
+    // Luminance and extinction per device unit of cells without data.
+    no_data: vec4<f32>,
 }
 
 @group(0) @binding(10) var<uniform> look: Look;

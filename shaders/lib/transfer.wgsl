@@ -8,7 +8,8 @@ struct Piece {
     low: vec4<f32>,
     // The same at the upper end.
     high: vec4<f32>,
-    // Lower end, upper end, 1 / (upper - lower) or 0 if the piece is unbounded.
+    // Lower end, upper end, 1 / width, width: of more digits than the ends, which may be one number. Both 0 if the piece is
+    // unbounded.
     s: vec4<f32>,
 }
 

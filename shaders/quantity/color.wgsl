@@ -2,7 +2,7 @@
 // does between the vertices' scalars is lost: the artifact that classification after interpolation avoids.
 import package::lib::view::{rotated};
 import package::lib::cell::{Cell, Corners, Reference, STEEPEST, rounded_by};
-import package::axes::data::{CELLWISE, scalar_of};
+import package::axes::data::{has_own, own_scalar, scalar_of};
 import package::axes::attributes::{attributes_of};
 
 alias Quantity = vec4<f32>;
@@ -21,8 +21,8 @@ fn quantity_at(cell: u32, name: u32) -> Quantity {
 
 // What a value carried over from the cell before is in this one.
 fn in_cell(value: Quantity, cell: u32) -> Quantity {
-    if CELLWISE {
-        return quantity_of(scalar_of(cell, 0u), 0u);
+    if has_own(cell) {
+        return quantity_of(own_scalar(cell), 0u);
     }
     return value;
 }

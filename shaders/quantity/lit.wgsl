@@ -3,7 +3,7 @@
 import package::lib::cell::{Cell, Reference, Corners, rounded_by};
 import package::lib::further::{Field, field_in, field_at};
 import package::lib::gradients::{gradients};
-import package::axes::data::{CELLWISE, scalar_of};
+import package::axes::data::{has_own, own_scalar, scalar_of};
 import package::axes::second::{SECOND_CELLWISE, seconds_of, second_of};
 
 // The two scalars; the gradient. The rest is unused.
@@ -23,8 +23,8 @@ fn quantity_at(cell: u32, name: u32) -> Quantity {
 // What a value carried over from the cell before is in this one.
 fn in_cell(value: Quantity, cell: u32) -> Quantity {
     var result = value;
-    if CELLWISE {
-        result[0].x = scalar_of(cell, 0u);
+    if has_own(cell) {
+        result[0].x = own_scalar(cell);
     }
     if SECOND_CELLWISE {
         result[0].y = second_of(cell, 0u);

@@ -1,7 +1,7 @@
 // What is linear in a cell: two scalars. They are classified after they have been interpolated.
 import package::lib::cell::{Cell, Reference, Corners, rounded_by};
 import package::lib::further::{Field, field_in, field_at};
-import package::axes::data::{CELLWISE, scalar_of};
+import package::axes::data::{has_own, own_scalar, scalar_of};
 import package::axes::second::{SECOND_CELLWISE, seconds_of, second_of};
 
 alias Quantity = vec2<f32>;
@@ -19,8 +19,8 @@ fn quantity_at(cell: u32, name: u32) -> Quantity {
 // What a value carried over from the cell before is in this one.
 fn in_cell(value: Quantity, cell: u32) -> Quantity {
     var result = value;
-    if CELLWISE {
-        result.x = scalar_of(cell, 0u);
+    if has_own(cell) {
+        result.x = own_scalar(cell);
     }
     if SECOND_CELLWISE {
         result.y = second_of(cell, 0u);

@@ -1,6 +1,6 @@
 // What is linear in a cell: the scalar. It is classified after it has been interpolated.
 import package::lib::cell::{Cell, Corners, Reference, rounded_by};
-import package::axes::data::{CELLWISE, scalar_of};
+import package::axes::data::{has_own, own_scalar, scalar_of};
 
 alias Quantity = f32;
 
@@ -19,8 +19,8 @@ fn quantity_at(cell: u32, name: u32) -> Quantity {
 
 // What a value carried over from the cell before is in this one.
 fn in_cell(value: Quantity, cell: u32) -> Quantity {
-    if CELLWISE {
-        return scalar_of(cell, 0u);
+    if has_own(cell) {
+        return own_scalar(cell);
     }
     return value;
 }

@@ -2,6 +2,8 @@
 import package::lib::view::{view, ORTHOGRAPHIC};
 import package::lib::span::{Segment};
 import package::lib::spent::{count_pieces};
+import package::lib::look::{look};
+import package::lib::no_data::{NO_DATA_FROM, shade_no_data};
 import package::axes::lit::{pieces_met, integrate_lit};
 
 fn pieces_between(low: f32, high: f32, entry: u32) -> vec2<u32> {
@@ -9,6 +11,10 @@ fn pieces_between(low: f32, high: f32, entry: u32) -> vec2<u32> {
 }
 
 fn shade(range: vec2<u32>, segment: Segment) -> vec4<f32> {
+    if segment.front[0].x >= NO_DATA_FROM {
+        count_pieces(segment.at, 1u);
+        return shade_no_data(look.no_data, segment.length);
+    }
     var eye = vec3<f32>(0.0, 0.0, -1.0);
     if !ORTHOGRAPHIC {
         eye = -normalize(vec3<f32>(segment.at * view.pixel, 1.0));

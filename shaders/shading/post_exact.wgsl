@@ -32,10 +32,23 @@ fn integrate(range: vec2<u32>, s_front: f32, s_back: f32, length: f32) -> vec4<f
     for (var n = range.x; n <= range.y; n++) {
         let bound = select(pieces[k].s.x, pieces[k].s.y, rise > 0.0);
         let end = clamp((bound - s_front) / rise, begin, 1.0);
-        if end > begin {
-            let front = classify(k, s_front + rise * begin);
-            let back = classify(k, s_front + rise * end);
-            let part = (end - begin) * length;
+        // Where a piece is entered and left it has its own ends and width, however narrow it is.
+        let entered = begin > 0.0;
+        let left = end < 1.0;
+        var part = end - begin;
+        if entered && left {
+            part = min(pieces[k].s.w / abs(rise), 1.0);
+        }
+        if part > 0.0 {
+            var front = select(pieces[k].high, pieces[k].low, rise > 0.0);
+            var back = select(pieces[k].low, pieces[k].high, rise > 0.0);
+            if !entered {
+                front = classify(k, s_front);
+            }
+            if !left {
+                back = classify(k, s_back);
+            }
+            part *= length;
             let w = weights(back.w * part, front.w * part);
             color += (1.0 - alpha) * (front.rgb * w.z + back.rgb * w.y);
             alpha += (1.0 - alpha) * w.x;

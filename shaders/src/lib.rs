@@ -28,12 +28,12 @@ macro_rules! modules {
 /// Every module: its name and its text. `lib` holds functions, `stages` entry points; every other folder is an axis.
 pub const MODULES: &[(&str, &str)] = modules! {
     lib {
-        balanced cell erf flat further gradients image integrated light lit_linear look lookup mesh mesh_buffers plane
-        prepared published radix ray ready scanned segment silhouette span spent symmetric thick tiles tiling transfer
+        balanced cell erf flat further gradients image integrated light lit_linear look lookup mesh mesh_buffers no_data
+        plane prepared published radix ray ready scanned segment silhouette span spent symmetric thick tiles tiling transfer
         triangle two_fields view volume walk whole widget widget_tables widgets
     }
     attributes { classified given }
-    data { cell point }
+    data { cell mixed point }
     function { analytic approximate image two_fields widgets }
     geometry { balanced ray thick vicp }
     grouping { none sorted }

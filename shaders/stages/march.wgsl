@@ -6,6 +6,7 @@
 import package::lib::view::{view, frame_of};
 import package::lib::mesh_buffers::{points, cells};
 import package::lib::span::{Segment};
+import package::lib::no_data::{NO_DATA};
 import package::lib::walk::{Ray, Corner, ray_through, offset_from, turns, area, place_of};
 import package::axes::quantity::{quantity_at, in_cell};
 import package::axes::shading::{pieces_between, shade};
@@ -73,8 +74,8 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
     let ray = ray_through(at);
     let stretch = length(vec3<f32>(ray.slope, 1.0));
     let near = view.near - view.forward.w;
-    // Scalars are normalised to [0, 1].
-    let range = pieces_between(0.0, 1.0, 0u);
+    // Scalars are normalised to [0, 1], and those of cells without data lie beyond.
+    let range = pieces_between(0.0, NO_DATA, 0u);
     let pixel = id.y * size.x + id.x;
     var color = vec4<f32>(0.0);
     for (var e = starts[pixel]; e < starts[pixel + 1u] && color.a < march.opaque; e++) {

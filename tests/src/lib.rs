@@ -24,8 +24,8 @@ use glam::DVec3;
 use tetlux_image::Image;
 use tetlux_mesh::procedural::Parts;
 use tetlux_mesh::{Component, Field, TetMesh};
-use tetlux_optics::Classification;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
+use tetlux_optics::{Classification, NoData};
 use tetlux_reference::{Caster, Ray};
 use tetlux_render::{Model, Renderer};
 use tetlux_scene::{Backend, Camera, CellProjection, Method, Order, Plan, Projection, Scene, Surface, View};
@@ -141,6 +141,7 @@ pub fn scene(mesh: &TetMesh, transfer: TransferFunction, camera: Camera, size: [
         scalar,
         second: None,
         classification: Classification::OneField(transfer),
+        no_data: NoData::default(),
         lighting: None,
         emphasis: None,
         surfaces: Vec::new(),
@@ -206,7 +207,11 @@ pub fn reference_beside(mesh: &TetMesh, scene: &Scene, by: [f64; 2]) -> Vec<[f64
         tolerance: REFERENCE_TOLERANCE,
     });
     let caster = caster
-        .and_then(|caster| caster.with_surfaces(scene.surfaces.iter().map(as_the_reference_takes_it).collect()))
+        .and_then(|caster| {
+            caster
+                .with_no_data(scene.no_data)
+                .with_surfaces(scene.surfaces.iter().map(as_the_reference_takes_it).collect())
+        })
         .unwrap_or_else(|e| panic!("the reference: {e}"));
     let ray = |x: u32, y: u32| {
         let (origin, direction) = view.ray(f64::from(x) + 0.5 + by[0], f64::from(y) + 0.5 + by[1]);

@@ -8,7 +8,7 @@ use glam::DVec3;
 use tetlux_mesh::procedural::{Split, cuboid, three_cycle};
 use tetlux_mesh::{Component, Field, TetMesh};
 use tetlux_optics::widget::{BivariateFunction, Rectangle, Shape, WaveProfile, Widget};
-use tetlux_optics::{Classification, ImageFunction, Light};
+use tetlux_optics::{Classification, ImageFunction, Light, NoData};
 use tetlux_render::{Frame, Model, Resources, table_specs};
 use tetlux_scene::{
     Backend, Camera, CellProjection, Integrator, Interpolation, Lighting, Method, Order, Plan, Planner, Scene,
@@ -101,6 +101,7 @@ fn scene(mesh: &TetMesh, second: &str, classification: Classification, light: Op
         scalar,
         second: Some(mesh.scalar(second, Component::Magnitude).unwrap()),
         classification,
+        no_data: NoData::default(),
         unit_distance: 1.0,
         camera,
         size: SIZE,

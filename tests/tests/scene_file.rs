@@ -8,6 +8,7 @@ use std::path::Path;
 use glam::DVec3;
 use tetlux_mesh::procedural::{Split, cuboid};
 use tetlux_mesh::{Field, TetMesh};
+use tetlux_optics::NoData;
 use tetlux_optics::emphasis::{Boundary, Contour, Emphasis, Steepness};
 use tetlux_scene::{
     Backend, CellProjection, Classification, Integrator, Interpolation, Method, Order, Projection, SceneFile,
@@ -358,6 +359,34 @@ fn files_and_presets_that_cannot_be_read() {
     fs::write(folder.path().join("preset.json"), r#"[{"Name": "p", "RGBPoints": [0, 0, 0, 0, 5, 1, 1, 1]}]"#).unwrap();
     let scene = file.scene(&mesh, 0).unwrap();
     assert_eq!(tetlux_tests::transfer_of(&scene).color_nodes().last().unwrap().s, 1.0);
+}
+
+#[test]
+fn cells_without_data_look_as_the_scene_says_or_else_the_preset() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = mesh(vec![("heat", 1, &|p| p.x)]);
+    let no_data = |transfer: &str, preset: &str| {
+        let path = folder.path().join("scene.toml");
+        fs::write(&path, format!("[transfer]\n{transfer}")).unwrap();
+        let preset = format!("[{{\"Name\": \"p\", \"RGBPoints\": [0, 0, 0, 0, 5, 1, 1, 1]{preset}}}]");
+        fs::write(folder.path().join("preset.json"), preset).unwrap();
+        SceneFile::read(&path).unwrap().scene(&mesh, 0).map(|scene| scene.no_data)
+    };
+    let of_nodes = "color = [[0.0, 1.0, 1.0, 1.0]]\nopacity = [[0.0, 1.0]]\n";
+    let look = |color, opacity| NoData::new(color, opacity).unwrap();
+    assert_eq!(no_data(of_nodes, "").unwrap(), NoData::default());
+    let both = format!("{of_nodes}nan_color = [0.5, 0.0, 2.0]\nnan_opacity = 3.0");
+    assert_eq!(no_data(&both, "").unwrap(), look([0.5, 0.0, 2.0], 3.0));
+    let of_preset = "preset = \"preset.json\"\n";
+    let green = r#", "NanColor": [0, 1, 0], "NanOpacity": 0.75"#;
+    assert_eq!(no_data(of_preset, "").unwrap(), NoData::default());
+    assert_eq!(no_data(of_preset, green).unwrap(), look([0.0, 1.0, 0.0], 0.75));
+    assert_eq!(no_data(&format!("{of_preset}nan_opacity = 0.0"), green).unwrap(), look([0.0, 1.0, 0.0], 0.0));
+    let bad = no_data(of_preset, r#", "NanColor": [0, -1, 0]"#).unwrap_err().to_string();
+    assert_says(&bad, &["scene.toml", "cells without data", "-1", "at least 0"]);
+    assert_says(&error(&format!("{TRANSFER}nan_color = [0.0, -1.0, 0.0]")), &["a.toml:4:", "nan_color", "at least 0"]);
+    assert_says(&error(&format!("{TRANSFER}nan_opacity = inf")), &["a.toml:4:", "nan_opacity", "inf"]);
+    assert_says(&error(&format!("{TRANSFER}nan_opacity = \"clear\"")), &["a.toml:4:"]);
 }
 
 #[test]

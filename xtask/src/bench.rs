@@ -14,7 +14,7 @@ mod race;
 mod scaling;
 mod skips;
 mod song;
-mod table;
+pub(crate) mod table;
 mod targets;
 
 use std::cell::RefCell;

@@ -45,9 +45,9 @@ const BESIDE: f64 = 1e-4;
 const MOVED: f64 = 1e-4;
 
 /// Name and what it changes of the default on a graphics adapter.
-type Row = (&'static str, fn(&mut Method));
+pub(crate) type Row = (&'static str, fn(&mut Method));
 
-const ROWS: &[Row] = &[
+pub(crate) const ROWS: &[Row] = &[
     ("default", |_| ()),
     ("`gator`, `perspective`", |m| m.projection = CellProjection::Gator),
     ("`vicp`", |m| m.projection = CellProjection::Vicp),

@@ -48,15 +48,21 @@ pub(crate) fn or_directly(loaded: Result<Vec<Arc<Table>>>, forced: bool, plan: &
     }
 }
 
-/// The same as [`load`], for programs that are to run at once: a table that is not stored is built for this run.
-pub(crate) fn load_or_build(input: &Input, plan: &Plan) -> Result<Vec<Arc<Table>>> {
+/// The same as [`load`], for programs that are to run at once: a table that is not stored is built for this run, unless it
+/// was for an earlier picture; `made` holds these.
+pub(crate) fn load_or_build(input: &Input, plan: &Plan, made: &mut Vec<Arc<Table>>) -> Result<Vec<Arc<Table>>> {
     let store = Store::new(PathBuf::from(FOLDER));
     let load = |spec: &TableSpec| -> Result<Arc<Table>> {
+        if let Some(table) = made.iter().find(|table| table.spec() == spec) {
+            return Ok(table.clone());
+        }
         let stored = store.path(spec).exists().then(|| store.read(spec)).transpose()?;
-        Ok(Arc::new(match stored {
+        let table = Arc::new(match stored {
             Some(stored) => stored.table,
             None => progress::during("building tables", || Table::build(spec))?,
-        }))
+        });
+        made.push(table.clone());
+        Ok(table)
     };
     table_specs(&input.scene, &input.mesh, plan).iter().map(load).collect()
 }

@@ -82,7 +82,7 @@ pub(crate) fn frame(input: &mut Input, renderer: &Renderer, method: fn(&mut Meth
     input.scene.method = Method { backend: Backend::Gpu, ..Method::default() };
     method(&mut input.scene.method);
     let plan = Plan::new(&input.scene, &input.mesh, renderer.device())?;
-    let tables = tables::load_or_build(input, &plan)?;
+    let tables = tables::load_or_build(input, &plan, &mut Vec::new())?;
     let model = Model::new(&input.mesh);
     Ok(progress::during("rendering", || renderer.render_with(&input.scene, &model, &plan, &tables))?)
 }

@@ -21,6 +21,7 @@ pub(crate) fn image(input: &Input, view: &View, by: [f64; 2]) -> Result<Image> {
         unit_distance: input.scene.unit_distance,
         tolerance: DEFAULT_TOLERANCE,
     })?
+    .with_no_data(input.scene.no_data)
     .with_surfaces(input.scene.surfaces.iter().map(surface).collect())?;
     let ray = |x: u32, y: u32| {
         let (origin, direction) = view.ray(f64::from(x) + 0.5 + by[0], f64::from(y) + 0.5 + by[1]);

@@ -18,6 +18,7 @@
 //! | [`widget`] | what a bivariate transfer function is: widgets over two scalars |
 //! | [`image_function`] | the same painted as an image |
 //! | [`classification`] | any of these over one or two scalars |
+//! | [`no_data`], [`no_data_f32`] | what cells without a finite value look like |
 //! | [`widget_integral`] | segments through widgets in f64, relative error below 1e-12 |
 //! | [`segment_f32`] | the shader's arithmetic in f32, line by line |
 //! | [`symmetric_f32`] | the same weights without division, in f32, as a shader has them |
@@ -62,6 +63,8 @@ pub mod light;
 pub mod light_f32;
 pub mod lit_f32;
 pub mod lit_linear_f32;
+pub mod no_data;
+pub mod no_data_f32;
 pub mod preset;
 pub mod published;
 pub mod published_f32;
@@ -86,6 +89,7 @@ pub use emission::EmissionConvention;
 pub use emphasis::{Emphasis, EmphasisError};
 pub use image_function::{ImageFunction, ImageFunctionError};
 pub use light::{Light, LightError};
+pub use no_data::{NoData, NoDataError};
 pub use preset::{Preset, PresetError, read_preset};
 pub use transfer::{ColorNode, OpacityNode, Piece, TransferFunction, TransferFunctionError};
 pub use widget::{BivariateFunction, Widget, WidgetError};

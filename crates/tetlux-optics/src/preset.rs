@@ -31,6 +31,8 @@ pub struct Preset {
     pub name: String,
     /// Colour for values that are not numbers.
     pub nan_color: Option<[f64; 3]>,
+    /// Opacity for values that are not numbers.
+    pub nan_opacity: Option<f64>,
     /// Luminance nodes over the preset's own range; at least one.
     pub color: Vec<ColorNode>,
     /// Opacity nodes; a ramp from 0 to 1 over the colours' range where the file has none.
@@ -223,7 +225,8 @@ fn interpret(mut raw: RawPreset) -> Result<Preset, PresetError> {
     } else {
         opacity_nodes(&raw)?
     };
-    let preset = Preset { name: preset, nan_color: raw.nan_color, color, opacity, log_scale: raw.log_scale };
+    let RawPreset { nan_color, nan_opacity, log_scale, .. } = raw;
+    let preset = Preset { name: preset, nan_color, nan_opacity, color, opacity, log_scale };
     preset.transfer_function(None)?;
     Ok(preset)
 }

@@ -4,7 +4,7 @@
 //! units cost digits.
 
 use crate::segment_f32::{weights_average, weights_direct};
-use crate::transfer::TransferFunction;
+use crate::transfer::{self, TransferFunction};
 
 /// An interval of the scalar on which luminance and extinction are linear; laid out as the shader's `Piece`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,7 +14,8 @@ pub struct Piece {
     pub low: [f32; 4],
     /// The same at the upper end.
     pub high: [f32; 4],
-    /// Lower end, upper end, 1 / (upper - lower) or 0 if the piece is unbounded, unused.
+    /// Lower end, upper end, 1 / width, width: of more digits than the ends, which may be one number. Both 0 if the piece is
+    /// unbounded.
     pub s: [f32; 4],
 }
 
@@ -28,37 +29,71 @@ pub enum Weights {
 }
 
 /// Where unbounded pieces end.
-const UNBOUNDED: f32 = 1e30;
+pub(crate) const UNBOUNDED: f32 = 1e30;
+
+/// No scalar is further from [0, 1]: what lies beyond of a piece is left out.
+const WINDOW: [f64; 2] = [-1.0, 2.0];
+
+/// Pieces narrower than this share of the range are left out: slopes stay finite.
+const LEAST_WIDTH: f64 = 1e-12;
+
+/// A scalar with `range`, lower end first, mapped to [0, 1]; a range of no width to 0.
+pub fn normalise([low, high]: [f64; 2], s: f64) -> f64 {
+    let width = high - low;
+    if width.is_nan() || width <= 0.0 {
+        s - low
+    } else if width.is_finite() {
+        (s - low) / width
+    } else {
+        // Halves, so that differences of the largest numbers do not overflow.
+        (0.5 * s - 0.5 * low) / (0.5 * high - 0.5 * low)
+    }
+}
 
 /// The pieces of a transfer function over the whole axis, ascending and without gaps, for [`integrate`].
 ///
-/// `range` is mapped to [0, 1] (a range of no width to 0); `extinction` is the extinction per device unit of opacity 1.
+/// `range` is mapped to [0, 1] ([`normalise`]); `extinction` is the extinction per device unit of opacity 1.
 pub fn pieces(transfer: &TransferFunction, range: [f64; 2], extinction: f64) -> Vec<Piece> {
-    let scale = if range[1] > range[0] { 1.0 / (range[1] - range[0]) } else { 1.0 };
-    let place = |s: f64| (((s - range[0]) * scale) as f32).clamp(-UNBOUNDED, UNBOUNDED);
-    let end = |luminance: [f64; 3], opacity: f64| {
-        let [r, g, b] = luminance.map(|c| c.min(f64::from(f32::MAX)) as f32);
+    let far = f64::from(UNBOUNDED);
+    let place = |s: f64| normalise(range, s).clamp(-far, far);
+    let end = |[r, g, b, opacity]: [f64; 4]| {
+        let [r, g, b] = [r, g, b].map(|c| c.min(f64::from(f32::MAX)) as f32);
         // Above MAX_DEPTH everything is opaque; below, the product with any length stays finite.
         [r, g, b, (opacity * extinction).min(1e15) as f32]
     };
-    let mut pieces = vec![Piece { s: [-UNBOUNDED, UNBOUNDED, 0.0, 0.0], ..Piece::default() }];
-    for piece in transfer.pieces() {
-        let [low, high] = piece.s.map(place);
-        // Control points that are one in f32 make a step.
-        if low < high {
-            let [at_low, at_high] = [0, 1].map(|i| end(piece.luminance[i], piece.opacity[i]));
-            pieces.push(Piece { low: at_low, high: at_high, s: [low, high, 1.0 / (high - low), 0.0] });
-        }
-    }
     let points = transfer.control_points();
     // A transfer function has at least one control point.
     let (first, last) = (points[0], points[points.len() - 1]);
-    let below = end(transfer.luminance_below(first), transfer.opacity_below(first));
-    let above = end(transfer.luminance(last), transfer.opacity(last));
-    let (first, last) = (place(first), place(last));
-    pieces[0] = Piece { low: below, high: below, s: [-UNBOUNDED, first, 0.0, 0.0] };
-    pieces.push(Piece { low: above, high: above, s: [last, UNBOUNDED, 0.0, 0.0] });
+    let [below, above] = [
+        (transfer.luminance_below(first), transfer.opacity_below(first)),
+        (transfer.luminance(last), transfer.opacity(last)),
+    ]
+    .map(|([r, g, b], opacity)| end([r, g, b, opacity]));
+    let single = |place: f64| place.clamp(WINDOW[0], WINDOW[1]) as f32;
+    let mut at = single(place(first));
+    let mut pieces = vec![Piece { low: below, high: below, s: [-UNBOUNDED, at, 0.0, 0.0] }];
+    for piece in transfer.pieces() {
+        let ends = piece.s.map(place);
+        let inside = ends.map(|end| end.clamp(WINDOW[0], WINDOW[1]));
+        let width = inside[1] - inside[0];
+        // Narrower ones make a step.
+        if width >= LEAST_WIDTH {
+            let [low, high] = inside.map(|place| end(value_at(&piece, (place - ends[0]) / (ends[1] - ends[0]))));
+            let next = single(ends[1]);
+            pieces.push(Piece { low, high, s: [at, next, (1.0 / width) as f32, width as f32] });
+            at = next;
+        }
+    }
+    pieces.push(Piece { low: above, high: above, s: [at, UNBOUNDED, 0.0, 0.0] });
     pieces
+}
+
+/// Luminance and, last, opacity of a piece at a share of its width.
+fn value_at(piece: &transfer::Piece, share: f64) -> [f64; 4] {
+    let mix = |low: f64, high: f64| if low == high { low } else { low * (1.0 - share) + high * share };
+    let [low, high] = piece.luminance;
+    let [r, g, b] = [0, 1, 2].map(|channel| mix(low[channel], high[channel]));
+    [r, g, b, mix(piece.opacity[0], piece.opacity[1])]
 }
 
 /// The last piece that begins at or below s.
@@ -114,12 +149,25 @@ pub fn integrate(
     let mut alpha = 0.0;
     let mut begin = 0.0;
     for _ in range[0]..=range[1] {
-        let bound = if rise > 0.0 { pieces[k].s[1] } else { pieces[k].s[0] };
+        let piece = &pieces[k];
+        let bound = if rise > 0.0 { piece.s[1] } else { piece.s[0] };
         let end = ((bound - s_front) / rise).max(begin).min(1.0);
-        if end > begin {
-            let front = classify(&pieces[k], s_front + rise * begin);
-            let back = classify(&pieces[k], s_front + rise * end);
-            let part = (end - begin) * length;
+        // Where a piece is entered and left it has its own ends and width, however narrow it is.
+        let (entered, left) = (begin > 0.0, end < 1.0);
+        let mut part = end - begin;
+        if entered && left {
+            part = (piece.s[3] / rise.abs()).min(1.0);
+        }
+        if part > 0.0 {
+            let mut front = if rise > 0.0 { piece.low } else { piece.high };
+            let mut back = if rise > 0.0 { piece.high } else { piece.low };
+            if !entered {
+                front = classify(piece, s_front);
+            }
+            if !left {
+                back = classify(piece, s_back);
+            }
+            part *= length;
             let w = weights(back[3] * part, front[3] * part);
             for i in 0..3 {
                 color[i] += (1.0 - alpha) * (front[i] * w[2] + back[i] * w[1]);
@@ -211,6 +259,56 @@ mod tests {
         }
         // Opacity 1.5 above the last node, at an extinction of 2 a unit.
         assert_eq!(pieces[pieces.len() - 1].low[3], 3.0);
+    }
+
+    #[test]
+    fn narrow_pieces_keep_their_area() {
+        // Triangles of area 1, down to where single precision does not tell their ends apart; in 0.9 of a range over a
+        // length of 0.9 each is an optical depth of 1.
+        for half in [1e-3, 1e-6, 1e-9, 2e-12] {
+            let heights = [(0.4321 - half, 0.0), (0.4321, 1.0 / half), (0.4321 + half, 0.0)];
+            let peak = TransferFunction::new(
+                vec![ColorNode { s: 0.0, rgb: [0.5, 1.0, 0.0] }],
+                heights.map(|(s, opacity)| OpacityNode { s, opacity }).to_vec(),
+            );
+            let pieces = pieces(&peak.unwrap(), [0.0, 1.0], 1.0);
+            for [front, back] in [[0.05, 0.95], [0.95, 0.05]] {
+                let found = whole(&pieces, front, back, 0.9);
+                let alpha = -(-1.0f64).exp_m1();
+                for (found, expected) in found.into_iter().zip([0.5 * alpha, alpha, 0.0, alpha]) {
+                    assert!((f64::from(found) - expected).abs() < 1e-5, "{half:e}: {found}, not {expected}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn pieces_that_reach_beyond_the_data_are_what_they_were() {
+        for wide in [1.0, 1e3, 1e9] {
+            let ends = [(0.5 - 10.0 * wide, 0.0), (0.5 + 30.0 * wide, 8.0)];
+            let ramp = TransferFunction::new(
+                ends.map(|(s, opacity)| ColorNode { s, rgb: [opacity; 3] }).to_vec(),
+                ends.map(|(s, opacity)| OpacityNode { s, opacity }).to_vec(),
+            )
+            .unwrap();
+            let pieces = pieces(&ramp, [0.0, 1.0], 1.0);
+            for s in [0.0, 0.25, 1.0] {
+                let [red, .., opacity] = classify(&pieces[piece_at(&pieces, s)], s);
+                let exact = ramp.opacity(f64::from(s));
+                assert!((f64::from(opacity) - exact).abs() < 1e-6 * exact && red == opacity, "{opacity}, not {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn scalars_of_any_range_are_normalised() {
+        for [low, high] in [[0.0, 1.0], [-1e-310, 1e-310], [-1.7e308, 1.7e308], [5.0, 5.0 + 1e-12], [-1e30, 2e30]] {
+            for share in [0.0, 0.25, 0.5, 1.0] {
+                let found = normalise([low, high], low * (1.0 - share) + high * share);
+                assert!((found - share).abs() < 1e-3, "{low:e} to {high:e}: {found}, not {share}");
+            }
+        }
+        assert_eq!([normalise([7.0, 7.0], 7.0), normalise([7.0, 7.0], 7.5)], [0.0, 0.5]);
     }
 
     #[test]

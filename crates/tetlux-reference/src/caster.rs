@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use tetlux_mesh::{Location, ScalarField, TetMesh};
-use tetlux_optics::{Classification, Light};
+use tetlux_optics::{Classification, Light, NoData};
 
 use crate::ReferenceError;
 use crate::definition::Definition;
@@ -13,7 +13,7 @@ use crate::hierarchy::Hierarchy;
 use crate::line::Line;
 use crate::quadrature::{Gathered, Integrator, Workspace};
 use crate::surface::{Surface, Surfaces};
-use crate::walk::{BoundaryFace, Segment, Space, segments};
+use crate::walk::{BoundaryFace, Contents, Segment, Space, segments};
 
 /// The tolerance to take where nothing else is asked.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -23,7 +23,8 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-10;
 pub struct Scene<'a> {
     /// The mesh.
     pub mesh: &'a TetMesh,
-    /// A scalar of this mesh. Cells with a value that is not finite, of this or the second, have no optical depth.
+    /// A scalar of this mesh. Cells with a value that is not finite, of this or the second, have no optical depth
+    /// ([`Caster::with_no_data`] gives them one).
     pub scalar: &'a ScalarField,
     /// A second scalar of this mesh, where the classification takes two.
     pub second: Option<&'a ScalarField>,
@@ -140,12 +141,19 @@ impl<'a> Caster<'a> {
         }
         let scale = unit_scale(mesh.points().iter());
         let gradients = lighting.map(|(_, gradients)| gradients);
-        let mut space = Space { mesh, scalars: [Some(scalar), second], gradients, colors, scale, empty: Vec::new() };
-        space.empty = (0..mesh.cells().len()).into_par_iter().map(|cell| is_empty(&space, cell)).collect();
+        let mut space = Space { mesh, scalars: [Some(scalar), second], gradients, colors, scale, contents: Vec::new() };
+        space.contents = (0..mesh.cells().len()).into_par_iter().map(|cell| contents(&space, cell)).collect();
         let hierarchy = BoundaryFace::hierarchy(&space);
         let definition = Definition::new(classification, lighting.map(|(light, _)| light), colors.is_some());
         let integrator = Integrator::new(definition, tolerance);
         Ok(Self { hierarchy, space, surfaces: None, integrator, unit_distance })
+    }
+
+    /// The same scene with cells seen that have a value which is not finite: of one luminance and opacity throughout, unlit.
+    #[must_use]
+    pub fn with_no_data(mut self, no_data: NoData) -> Self {
+        self.integrator = self.integrator.with_no_data(no_data);
+        self
     }
 
     /// The same scene with opaque surfaces in it: the first that a ray meets ends the volume, and is seen through what of
@@ -259,8 +267,7 @@ fn flush(v: DVec3) -> DVec3 {
     DVec3::select(v.abs().cmplt(DVec3::splat(1e-30)), DVec3::ZERO, v)
 }
 
-/// Whether a cell is flat or misses a value.
-fn is_empty(space: &Space, cell: usize) -> bool {
+fn contents(space: &Space, cell: usize) -> Contents {
     let vertices = space.mesh.cells()[cell];
     let missing = space.scalars.into_iter().flatten().any(|scalar| match scalar.location {
         Location::Point => vertices.iter().any(|&v| !scalar.values[v as usize].is_finite()),
@@ -270,7 +277,11 @@ fn is_empty(space: &Space, cell: usize) -> bool {
         let p = space.position(v);
         robust::Coord3D { x: p.x, y: p.y, z: p.z }
     });
-    missing || robust::orient3d(a, b, c, d) == 0.0
+    match (robust::orient3d(a, b, c, d) == 0.0, missing) {
+        (true, _) => Contents::Nothing,
+        (false, true) => Contents::NoData,
+        (false, false) => Contents::Data,
+    }
 }
 
 #[cfg(test)]

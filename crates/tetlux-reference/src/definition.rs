@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use tetlux_optics::widget::{Rectangle, Shape, WaveProfile, Widget};
-use tetlux_optics::{Classification, Light};
+use tetlux_optics::{Classification, Light, NoData};
 
 use crate::walk::{GRADIENT, Segment, Values};
 
@@ -54,6 +54,8 @@ pub(crate) struct Definition<'a> {
     light: Option<&'a Light>,
     /// Luminance and opacity are what is known of a point.
     given: bool,
+    /// What is seen where a value is missing.
+    pub(crate) no_data: NoData,
     /// Control points of a transfer function: of the luminance and of the opacity. Of an image, its nodes along the
     /// first and the second axis.
     color_points: Vec<f64>,
@@ -78,7 +80,7 @@ impl<'a> Definition<'a> {
             }
             Classification::Widgets(_) => (Vec::new(), Vec::new()),
         };
-        Self { classification, light, given, color_points, opacity_points }
+        Self { classification, light, given, no_data: NoData::default(), color_points, opacity_points }
     }
 
     /// The largest luminance, at least 1: what an error of the transmittance may cost.
@@ -87,7 +89,8 @@ impl<'a> Definition<'a> {
             let [ambient, diffuse, specular] = light.shares();
             [ambient + diffuse, specular]
         });
-        (self.classification.brightest() * lit[0] + lit[1]).max(1.0)
+        let no_data = self.no_data.luminance().into_iter().fold(1.0, f64::max);
+        (self.classification.brightest() * lit[0] + lit[1]).max(no_data)
     }
 
     /// How a ray of this direction sees.
@@ -98,6 +101,9 @@ impl<'a> Definition<'a> {
     /// Appends the shares of a segment at which something is not smooth; some may lie outside (0, 1).
     pub(crate) fn cuts(&self, segment: &Segment, sight: &Sight, cuts: &mut Vec<f64>) {
         let [front, back] = segment.values;
+        if is_missing(&front) {
+            return;
+        }
         match self.classification {
             // Linear throughout.
             _ if self.given => {}
@@ -134,6 +140,10 @@ impl<'a> Definition<'a> {
 
     /// Opacity and emission of a point, as limits from inside a stretch.
     pub(crate) fn look_up(&self, inside: &Inside, values: &Values, sight: &Sight) -> Appearance {
+        if is_missing(values) {
+            let opacity = self.no_data.opacity();
+            return Appearance { opacity, emission: self.no_data.luminance().map(|l| l * opacity) };
+        }
         let (opacity, luminance) = self.classify(inside, values);
         if opacity == 0.0 {
             return Appearance::default();
@@ -192,6 +202,11 @@ fn distinct(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut values: Vec<f64> = values.collect();
     values.dedup();
     values
+}
+
+/// Whether these are the values of a cell without data.
+fn is_missing(values: &Values) -> bool {
+    values[0].is_nan()
 }
 
 fn gradient(values: &Values) -> DVec3 {

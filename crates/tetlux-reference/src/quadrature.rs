@@ -1,6 +1,7 @@
 //! Adaptive quadrature of the emission-absorption integral along the segments of a ray.
 
 use glam::DVec3;
+use tetlux_optics::NoData;
 
 use crate::definition::{Definition, Inside, Sight};
 use crate::rule::Rule;
@@ -36,6 +37,8 @@ struct Layer {
 struct Estimate {
     color: [f64; 3],
     depth: f64,
+    /// By how much the extinctions differ that it saw.
+    spread: f64,
 }
 
 /// Buffers that a thread uses again and again.
@@ -76,6 +79,12 @@ impl<'a> Integrator<'a> {
     pub(crate) fn new(definition: Definition<'a>, tolerance: f64) -> Self {
         let brightest = definition.brightest();
         Self { definition, brightest, tolerance, rules: (Rule::new(), Rule::new(), Rule::new()) }
+    }
+
+    /// The same with cells without data seen.
+    pub(crate) fn with_no_data(mut self, no_data: NoData) -> Self {
+        self.definition.no_data = no_data;
+        Self::new(self.definition, self.tolerance)
     }
 
     /// How a ray of this direction sees.
@@ -169,18 +178,19 @@ impl<'a> Integrator<'a> {
         }
         let transmittance = (-sum.optical_depth).exp();
         let allowed = scales.error * (b - a);
+        let place = place_rounding(layers, b);
         let mut accepted = None;
         if best.depth <= MOST_DEPTH || halvings == MOST_HALVINGS {
             let rough = self.estimate(&self.rules.0, layers, [a, b], scales, sum);
-            if halvings == MOST_HALVINGS || self.agree(&rough, &best, transmittance, allowed) {
+            if halvings == MOST_HALVINGS || self.agree(&rough, &best, transmittance, allowed, place) {
                 accepted = Some(best);
             } else {
                 let finer = self.estimate(&self.rules.2, layers, [a, b], scales, sum);
-                accepted = self.agree(&best, &finer, transmittance, allowed).then_some(finer);
+                accepted = self.agree(&best, &finer, transmittance, allowed, place).then_some(finer);
             }
         }
         match accepted {
-            Some(Estimate { color, depth }) => {
+            Some(Estimate { color, depth, .. }) => {
                 for channel in 0..3 {
                     sum.color[channel] += transmittance * color[channel];
                 }
@@ -194,12 +204,13 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Whether two estimates differ by no more than is allowed, or than rounding explains.
-    fn agree(&self, rough: &Estimate, fine: &Estimate, transmittance: f64, allowed: f64) -> bool {
+    /// Whether two estimates differ by no more than is allowed, or than rounding explains: of the results, and, where the
+    /// extinction is steep, of places by `place`.
+    fn agree(&self, rough: &Estimate, fine: &Estimate, transmittance: f64, allowed: f64, place: f64) -> bool {
         let depth_error = self.brightest * (fine.depth - rough.depth).abs();
         let light = fine.color.iter().fold(0.0, |m: f64, &c| m.max(c));
         let light_error = (0..3).map(|c| (fine.color[c] - rough.color[c]).abs()).fold(0.0, f64::max);
-        let rounding = ROUNDING * (light + self.brightest * fine.depth);
+        let rounding = ROUNDING * (light + self.brightest * fine.depth) + self.brightest * fine.spread * place;
         transmittance * (light_error + depth_error) <= allowed.max(transmittance * rounding)
     }
 
@@ -224,10 +235,12 @@ impl<'a> Integrator<'a> {
                 }
             }
         }
-        let mut estimate = Estimate { color: [0.0; 3], depth: 0.0 };
+        let mut estimate = Estimate { color: [0.0; 3], depth: 0.0, spread: 0.0 };
         if extinctions == [0.0; N] {
             return estimate;
         }
+        let [least, most] = extinctions.iter().fold([f64::INFINITY, 0.0], |[l, m]: [f64; 2], &e| [l.min(e), m.max(e)]);
+        estimate.spread = most - least;
         for i in 0..N {
             let before: f64 = (0..N).map(|j| rule.running[i][j] * extinctions[j]).sum();
             let weight = rule.weights[i] * (b - a);
@@ -244,6 +257,21 @@ impl<'a> Integrator<'a> {
     fn hidden(&self, sum: &Gathered) -> bool {
         sum.optical_depth > 1.0 && (-sum.optical_depth).exp() * self.brightest < HIDDEN * self.tolerance
     }
+}
+
+/// By how much rounding moves a place on a line: that of its parameter `t`, and that of scalars over how fast they change.
+fn place_rounding(layers: &[Layer], t: f64) -> f64 {
+    let of_scalars = layers.iter().flat_map(|Layer { segment, .. }| {
+        let [front, back] = segment.values;
+        let length = segment.t[1] - segment.t[0];
+        [0, 1].map(|axis| {
+            // Halves, so that the difference of two large scalars does not overflow.
+            let change = (0.5 * back[axis] - 0.5 * front[axis]).abs();
+            let size = 0.5 * front[axis].abs().max(back[axis].abs());
+            if change > 0.0 { length * (size / change) } else { 0.0 }
+        })
+    });
+    ROUNDING * of_scalars.fold(t.abs(), f64::max)
 }
 
 #[cfg(test)]

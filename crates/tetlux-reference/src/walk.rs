@@ -18,7 +18,7 @@ pub(crate) const GRADIENT: usize = 4;
 pub(crate) struct Segment {
     /// Parameter of its ends, ascending.
     pub(crate) t: [f64; 2],
-    /// Values at its ends.
+    /// Values at its ends; NaN in a cell without data.
     pub(crate) values: [Values; 2],
 }
 
@@ -42,8 +42,19 @@ pub(crate) struct Space<'a> {
     pub(crate) colors: Option<&'a [[f64; 4]]>,
     /// Power of two that takes the mesh's half-width into [0.5, 1).
     pub(crate) scale: f64,
-    /// Cells without optical depth: flat, or with a value missing.
-    pub(crate) empty: Vec<bool>,
+    /// What there is to see in each cell.
+    pub(crate) contents: Vec<Contents>,
+}
+
+/// What there is to see in a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Contents {
+    /// Nothing: it has no volume.
+    Nothing,
+    /// What its values look like.
+    Data,
+    /// A value is missing.
+    NoData,
 }
 
 impl Space<'_> {
@@ -195,10 +206,12 @@ fn walk(
         };
         let (leave, leave_values) = face.place();
         let leave = leave.max(t);
-        if !space.empty[cell as usize] {
-            let values = space.in_cell(cell as usize, [values, leave_values]);
-            found.extend(clip(Segment { t: [t, leave], values }, [start, end]));
-        }
+        let values_here = match space.contents[cell as usize] {
+            Contents::Nothing => None,
+            Contents::Data => Some(space.in_cell(cell as usize, [values, leave_values])),
+            Contents::NoData => Some([[f64::NAN; 7]; 2]),
+        };
+        found.extend(values_here.and_then(|values| clip(Segment { t: [t, leave], values }, [start, end])));
         (t, values) = (leave, leave_values);
         cell = space.mesh.neighbors()[cell as usize][exit];
     }

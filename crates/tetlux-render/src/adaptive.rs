@@ -22,8 +22,8 @@ pub(crate) fn entries(
 ) -> (Vec<u32>, Vec<u32>) {
     let cut = |&cell: &u32| -> Vec<(u32, u32)> {
         let names = device.cells[cell as usize].map(|v| (v & !NEGATIVE) as usize);
-        let scalars = match device.cell_scalars.get(cell as usize) {
-            Some(&s) => [s; 4],
+        let scalars = match device.own_scalar(cell) {
+            Some(s) => [s; 4],
             None => names.map(|v| device.points[v][3]),
         };
         let low = scalars.into_iter().fold(f32::INFINITY, f32::min);
@@ -78,7 +78,7 @@ mod tests {
         let transfer = TransferFunction::new(vec![ColorNode { s: 0.0, rgb: [1.0; 3] }], nodes).unwrap();
         let pieces = pieces(&transfer, scalar.range, 1.0);
         assert_eq!(pieces.len(), 5, "below 0 (colour), 0 to 1/4, two between, above 3/4");
-        let device = DeviceMesh::new(&mesh, &scalar);
+        let device = DeviceMesh::new(&mesh, &scalar, &[]);
         for (x, orthographic, expected) in [
             (-3.0, false, [1, 2, 3, 4]),
             (3.0, false, [4, 3, 2, 1]),

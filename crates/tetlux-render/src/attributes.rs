@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 use tetlux_mesh::Location;
+use tetlux_optics::no_data_f32::no_data;
 use tetlux_scene::{Backend, Classification, Plan, Scene};
 
 /// What luminance and optical depth per device unit are limited to: products with lengths stay finite.
@@ -13,6 +14,7 @@ const DENSEST: f64 = 1e15;
 pub(crate) struct Attributes {
     /// Of the points, or of the cells.
     pub(crate) location: Location,
+    /// One each; the last is that of cells without data.
     pub(crate) values: Vec<[f32; 4]>,
 }
 
@@ -25,11 +27,13 @@ impl Attributes {
             let [r, g, b] = [r, g, b].map(|l| l.min(BRIGHTEST) as f32);
             [r, g, b, (opacity * extinction).min(DENSEST) as f32]
         };
+        let with_no_data = |mut values: Vec<[f32; 4]>| {
+            values.push(no_data(&scene.no_data, extinction));
+            values
+        };
         if let Some(colors) = &plan.colors {
-            return Some(Attributes {
-                location: Location::Point,
-                values: colors.par_iter().map(|&c| single(c)).collect(),
-            });
+            let values = with_no_data(colors.par_iter().map(|&c| single(c)).collect());
+            return Some(Attributes { location: Location::Point, values });
         }
         let transfer = scene
             .transfer()
@@ -41,9 +45,7 @@ impl Attributes {
             let [r, g, b] = transfer.luminance(s);
             single([r, g, b, transfer.opacity(s)])
         };
-        Some(Attributes {
-            location: scene.scalar.location,
-            values: scene.scalar.values.par_iter().map(color).collect(),
-        })
+        let values = with_no_data(scene.scalar.values.par_iter().map(color).collect());
+        Some(Attributes { location: scene.scalar.location, values })
     }
 }

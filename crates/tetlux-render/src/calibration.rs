@@ -74,6 +74,7 @@ fn sample(projection: CellProjection, cubes: usize, side: u32) -> Result<(TetMes
     let scene = Scene {
         scalar: mesh.scalar("s", Component::Magnitude).map_err(sample_error)?,
         second: None,
+        no_data: tetlux_optics::NoData::default(),
         classification: Classification::OneField(transfer),
         lighting: None,
         emphasis: None,

@@ -3,9 +3,36 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::{Location, ScalarField, TetMesh};
+use tetlux_optics::no_data_f32::NO_DATA;
+use tetlux_optics::transfer_f32::normalise;
 
 /// In the first vertex of a device cell: the ascending order of the vertices is negatively oriented.
 pub(crate) const NEGATIVE: u32 = 1 << 31;
+
+/// In the place of a cell's scalar: those of its points.
+const OF_POINTS: f32 = -1.0;
+
+/// Where the scalars of cells are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Data {
+    /// All at the points.
+    Point,
+    /// All in the cells.
+    Cell,
+    /// At the points, but for cells without data.
+    Mixed,
+}
+
+impl Data {
+    /// Where those of a scalar are; cells that miss values of the scalars `without` are seen.
+    pub(crate) fn of(scalar: &ScalarField, without: &[&ScalarField]) -> Data {
+        match (scalar.location, without.is_empty()) {
+            (Location::Point, true) => Data::Point,
+            (Location::Point, false) => Data::Mixed,
+            (Location::Cell, _) => Data::Cell,
+        }
+    }
+}
 
 /// A mesh and one of its scalars, in device units.
 #[derive(Debug, Clone)]
@@ -16,19 +43,22 @@ pub(crate) struct DeviceMesh {
     pub(crate) points: Vec<[f32; 4]>,
     /// Vertices in ascending order, [`NEGATIVE`] in the first.
     pub(crate) cells: Vec<[u32; 4]>,
-    /// The normalised scalar of each cell; empty for point data.
+    /// The normalised scalar of each cell, or [`NO_DATA`], or [`OF_POINTS`]; empty if all have those of their points.
     pub(crate) cell_scalars: Vec<f32>,
+    pub(crate) data: Data,
     /// Bounding box in device units.
     pub(crate) bounds: [DVec3; 2],
 }
 
 impl DeviceMesh {
-    /// Scalars are mapped from the field's range to [0, 1]; missing ones become 0 (the plan leaves their cells out).
-    pub(crate) fn new(mesh: &TetMesh, scalar: &ScalarField) -> DeviceMesh {
+    /// Scalars are mapped from the field's range to [0, 1]; missing ones become 0: the plan leaves their cells out, or they
+    /// are seen as [`NO_DATA`] where one of the scalars `without` misses a value.
+    pub(crate) fn new(mesh: &TetMesh, scalar: &ScalarField, without: &[&ScalarField]) -> DeviceMesh {
         let bounds = mesh.local_bounds();
         let scale = unit_scale((bounds[1] - bounds[0]).max_element());
         let normalise = |s: f64| normalised(scalar, s) as f32;
-        let at_points = scalar.location == Location::Point;
+        let data = Data::of(scalar, without);
+        let at_points = data != Data::Cell;
         let points = mesh
             .points()
             .par_iter()
@@ -38,17 +68,34 @@ impl DeviceMesh {
                 [x, y, z, if at_points { normalise(scalar.values[i]) } else { 0.0 }]
             })
             .collect();
-        let cell_scalars = if at_points { Vec::new() } else { scalar.values.iter().map(|&s| normalise(s)).collect() };
+        let cell_scalar = |cell: usize| match at_points {
+            _ if without.iter().any(|scalar| is_missing(mesh, scalar, cell)) => NO_DATA,
+            true => OF_POINTS,
+            false => normalise(scalar.values[cell]),
+        };
+        let own = if data == Data::Point { 0 } else { mesh.cells().len() };
+        let cell_scalars = (0..own).into_par_iter().map(cell_scalar).collect();
         let cells = mesh.cells().par_iter().map(|&cell| ascending(cell)).collect();
-        DeviceMesh { scale, points, cells, cell_scalars, bounds: bounds.map(|corner| corner * scale) }
+        DeviceMesh { scale, points, cells, cell_scalars, data, bounds: bounds.map(|corner| corner * scale) }
+    }
+
+    /// The scalar that a cell has throughout; `None` if it has those of its points.
+    pub(crate) fn own_scalar(&self, cell: u32) -> Option<f32> {
+        self.cell_scalars.get(cell as usize).copied().filter(|&s| s != OF_POINTS)
+    }
+}
+
+/// Whether a cell has no finite value of a scalar.
+fn is_missing(mesh: &TetMesh, scalar: &ScalarField, cell: usize) -> bool {
+    match scalar.location {
+        Location::Point => mesh.cells()[cell].iter().any(|&v| !scalar.values[v as usize].is_finite()),
+        Location::Cell => !scalar.values[cell].is_finite(),
     }
 }
 
 /// A value of a field mapped from its range to [0, 1]; 0 if it is missing.
 pub(crate) fn normalised(scalar: &ScalarField, s: f64) -> f64 {
-    let [low, high] = scalar.range;
-    let width = if high > low { high - low } else { 1.0 };
-    if s.is_finite() { ((s - low) / width).clamp(0.0, 1.0) } else { 0.0 }
+    if s.is_finite() { normalise(scalar.range, s).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The power of two that brings a width into [1, 2).

@@ -155,7 +155,7 @@ impl Gpu {
     pub(crate) fn draw(&self, plan: &Plan, job: &Job, stages: &mut Stages) -> Result<Drawn, RenderError> {
         let open = &*self.opened(stages)?;
         let look = job.look.as_ref().map(LookVariant::new);
-        let variant = Variant::new(plan, !job.mesh.cell_scalars.is_empty(), look, job.backdrop.is_some());
+        let variant = Variant::new(plan, job.mesh.data, look, job.backdrop.is_some());
         let all = job.kept.contains(Skip::Pipelines) && job.entry_pieces.is_empty();
         let sorted = all || stretch::sorted(job.groups).next().is_some();
         self.check_limits(open, &variant, job)?;

@@ -77,6 +77,7 @@ use std::sync::{Arc, Mutex};
 
 use tetlux_image::Image;
 use tetlux_mesh::ScalarField;
+use tetlux_optics::no_data_f32::{add_no_data, no_data};
 use tetlux_optics::transfer_f32::{Piece, Weights, pieces};
 use tetlux_order::{OrderReport, Orderer};
 use tetlux_scene::{
@@ -249,8 +250,7 @@ impl Renderer {
         let (mesh, view) = (model.mesh(), &plan.view);
         let on_device = plan.backend == Backend::Gpu && self.gpu.as_ref().is_some_and(|gpu| gpu.sorts(plan));
         let mut order = order::order(&self.orderer, model, plan, on_device, &mut stages);
-        let (device_mesh, mesh_reused) =
-            stages.run("prepare", || model.prepared(&scene.scalar, plan.may_skip(Skip::Uploads)));
+        let (device_mesh, mesh_reused) = stages.run("prepare", || model.prepared(scene, plan.may_skip(Skip::Uploads)));
         if plan.kept.contains(Skip::Gradients) {
             stages.run("gradients", || std::hint::black_box(mesh.vertex_gradients(&scene.scalar)));
         }
@@ -260,11 +260,14 @@ impl Renderer {
             return Err(RenderError::Missing("luminance and opacity at every point"));
         }
         // Of a function of two fields one piece of nothing.
-        let pieces = plan
+        let mut pieces = plan
             .transfer
             .as_ref()
             .or(scene.transfer())
             .map_or_else(|| vec![Piece::default()], |transfer| pieces(transfer, scene.scalar.range, extinction));
+        if !scene.seen_without_data().is_empty() {
+            add_no_data(&mut pieces, no_data(&scene.no_data, extinction));
+        }
         let weights = match plan.integrator {
             Integrator::Average => Weights::Average,
             // The CPU back end has these two: the plan sees to it.

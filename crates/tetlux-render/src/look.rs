@@ -17,6 +17,7 @@ use tetlux_optics::image_f32::{self, Image};
 use tetlux_optics::light_f32::LightUniform;
 use tetlux_optics::lit_f32::{Turning, integrate_lit};
 use tetlux_optics::lit_linear_f32::{Illuminated, one_field, two_fields};
+use tetlux_optics::no_data_f32::{NO_DATA_FROM, no_data, shade_no_data};
 use tetlux_optics::transfer_f32::{self, Piece, Weights};
 use tetlux_optics::two_field_f32;
 use tetlux_optics::vertex_f32;
@@ -66,6 +67,8 @@ pub(crate) struct Look {
     pub(crate) light: Option<(LightUniform, Turning)>,
     /// Error of a segment's colour for an opacity of 1.
     pub(crate) color_error: f32,
+    /// Luminance and extinction per device unit of cells without data.
+    pub(crate) no_data: [f32; 4],
 }
 
 /// Segments that were shaded one by one: those of a scene with two fields, light, or classified at the vertices.
@@ -169,6 +172,8 @@ impl Look {
             let [ambient, diffuse, specular] = lighting.light.shares();
             brightest = brightest * (ambient + diffuse) + specular;
         }
+        let no_data = no_data(&scene.no_data, extinction);
+        let brightest = scene.no_data.luminance().into_iter().fold(brightest, f64::max);
         Ok(Some(Look {
             further,
             brightest,
@@ -178,6 +183,7 @@ impl Look {
             emission: extinction as f32,
             light,
             color_error: error(share),
+            no_data,
         }))
     }
 
@@ -197,6 +203,9 @@ impl Look {
 
     /// Premultiplied colour and alpha of a segment, and the pieces that it took.
     pub(crate) fn shade(&self, segment: &Segment) -> Integrated {
+        if segment.front[0] >= NO_DATA_FROM {
+            return Integrated { color: shade_no_data(self.no_data, segment.length), pieces: 1 };
+        }
         match &self.light {
             None => self.classify(segment, 0.0, 1.0, 1.0),
             Some((light, turning)) => match &self.function {

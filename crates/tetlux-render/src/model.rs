@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use tetlux_mesh::{ScalarField, TetMesh};
 use tetlux_order::Facts;
+use tetlux_scene::Scene;
 
 use crate::device_mesh::DeviceMesh;
 
@@ -14,9 +15,12 @@ pub struct Model<'a> {
     facts: OnceLock<Facts>,
     /// The facts came with the mesh.
     known: bool,
-    /// As devices have it, with the field of the last picture.
-    prepared: Mutex<Option<(ScalarField, Arc<DeviceMesh>)>>,
+    /// As devices have it, with the field of the last picture and those of which cells without data were seen.
+    prepared: Mutex<Option<Prepared>>,
 }
+
+/// A mesh as devices have it, and the fields that it was made of.
+type Prepared = (Vec<ScalarField>, Arc<DeviceMesh>);
 
 impl<'a> Model<'a> {
     /// Nothing is found before a picture needs it.
@@ -39,17 +43,21 @@ impl<'a> Model<'a> {
         self.facts.get_or_init(|| Facts::new(self.mesh))
     }
 
-    /// The mesh as devices have it, and whether it is that of the last picture: if that showed the same field, and
+    /// The mesh as devices have it, and whether it is that of the last picture: if that showed the same fields, and
     /// `reuse` is not refused.
-    pub(crate) fn prepared(&self, scalar: &ScalarField, reuse: bool) -> (Arc<DeviceMesh>, bool) {
+    pub(crate) fn prepared(&self, scene: &Scene, reuse: bool) -> (Arc<DeviceMesh>, bool) {
         // What a panic elsewhere left is as good as before.
         let lock = || self.prepared.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = |of: &ScalarField| of.range == scalar.range && of.is_same(scalar);
+        let without = scene.seen_without_data();
+        let fields: Vec<&ScalarField> = std::iter::once(&scene.scalar).chain(without.iter().copied()).collect();
+        let same = |of: &[ScalarField]| {
+            of.len() == fields.len() && of.iter().zip(&fields).all(|(a, b)| a.range == b.range && a.is_same(b))
+        };
         if let Some((_, mesh)) = lock().as_ref().filter(|(of, _)| reuse && same(of)) {
             return (mesh.clone(), true);
         }
-        let mesh = Arc::new(DeviceMesh::new(self.mesh, scalar));
-        *lock() = Some((scalar.clone(), mesh.clone()));
+        let mesh = Arc::new(DeviceMesh::new(self.mesh, &scene.scalar, &without));
+        *lock() = Some((fields.into_iter().cloned().collect(), mesh.clone()));
         (mesh, false)
     }
 

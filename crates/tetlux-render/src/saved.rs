@@ -1,9 +1,10 @@
 //! Bytes that a picture does without.
 
-use tetlux_mesh::{Location, TetMesh};
+use tetlux_mesh::TetMesh;
 use tetlux_scene::{Backend, Fate, Plan, Scene, Skip, SkipLine};
 use tetlux_tables::TableSpec;
 
+use crate::device_mesh::Data;
 use crate::gpu::variant::Variant;
 use crate::tiles;
 
@@ -13,13 +14,13 @@ pub fn bytes_saved(scene: &Scene, mesh: &TetMesh, plan: &Plan, line: &SkipLine) 
         return 0;
     }
     let gpu = plan.backend == Backend::Gpu;
-    let on_cells = scene.scalar.location == Location::Cell;
+    let data = Data::of(&scene.scalar, &scene.seen_without_data());
     let of_mesh = |points: u64, cells: u64| points * mesh.points().len() as u64 + cells * mesh.cells().len() as u64;
     // Projected, where the CPU back end does so many at a time, and listed in the order.
     let projected = |cells: usize| {
         let cells = cells as u64;
         if gpu {
-            cells * Variant::new(plan, on_cells, None, false).geometry().bytes
+            cells * Variant::new(plan, data, None, false).geometry().bytes
         } else {
             tiles::bytes_set_up(cells)
         }
@@ -33,7 +34,7 @@ pub fn bytes_saved(scene: &Scene, mesh: &TetMesh, plan: &Plan, line: &SkipLine) 
         Skip::Gradients => of_mesh(24, 0),
         // The default table.
         Skip::Tables => 4 * TableSpec::default_q().size.map(u64::from).iter().product::<u64>(),
-        Skip::Uploads => of_mesh(16, if on_cells { 20 } else { 16 }),
+        Skip::Uploads => of_mesh(16, if data == Data::Point { 16 } else { 20 }),
         _ => 0,
     }
 }

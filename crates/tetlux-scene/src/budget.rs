@@ -213,7 +213,12 @@ fn of_wrong_order(depth: f64, spread: f64) -> f64 {
 fn depth_and_spread(scene: &Scene, measures: &Measures) -> (f64, f64) {
     match scene.transfer() {
         Some(transfer) if scene.lighting.is_none() => {
-            (transfer.max_opacity(scene.scalar.range) * measures.extent, transfer.luminance_spread())
+            let (opacity, spread) = (transfer.max_opacity(scene.scalar.range), transfer.luminance_spread());
+            if scene.seen_without_data().is_empty() {
+                return (opacity * measures.extent, spread);
+            }
+            // Whatever the data look like beside it.
+            (opacity.max(scene.no_data.opacity()) * measures.extent, lit(scene))
         }
         // Whatever light makes of it.
         _ => (f64::INFINITY, if scene.single_luminance().is_some() { 0.0 } else { lit(scene) }),
@@ -228,6 +233,8 @@ fn lit(scene: &Scene) -> f64 {
     };
     let plain = scene.classification.brightest();
     let volume = scene.lighting.as_ref().map_or(plain, |lighting| by(&lighting.light, plain));
+    let without = scene.seen_without_data().first().map_or([0.0; 3], |_| scene.no_data.luminance());
+    let volume = without.into_iter().fold(volume, f64::max);
     let surfaces = scene.surfaces.iter().map(|s| by(s.light(), s.color().into_iter().fold(0.0, f64::max)));
     surfaces.fold(volume, f64::max)
 }
@@ -294,7 +301,11 @@ pub(crate) fn spend(scene: &Scene, measures: &Measures, backend: Backend) -> Spe
     };
     if scene.method.order == Order::Auto && !off.contains(Skip::Order) {
         let (depth, spread) = depth_and_spread(scene, measures);
-        spending.order = afford(of_wrong_order(depth, spread));
+        let error = of_wrong_order(depth, spread);
+        // Of a volume that is hardly seen it must be as small a share of what is seen.
+        if error <= LARGEST_SHARE * budget * -(-depth).exp_m1() {
+            spending.order = afford(error);
+        }
     }
     if scene.method.integrator == Integrator::Auto && scene.method.classification == Classification::Auto {
         spending.average = afford(0.5 * spread_within_cells(transfer, measures.widest));

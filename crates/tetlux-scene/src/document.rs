@@ -158,6 +158,8 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, SceneError> {
         second: source.second(&transfer, &widget)?,
         range: source.range(&transfer)?,
         transfer: source.transfer(&transfer, &widget, beside)?,
+        nan_color: source.nan_color(transfer.get_ref())?,
+        nan_opacity: source.nan_opacity(transfer.get_ref())?,
         emphasis: emphasis.map(|emphasis| source.emphasis(&emphasis)).transpose()?,
         light,
         surfaces: surface.iter().map(|s| source.surface(s, light, beside)).collect::<Result<_, _>>()?,

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use tetlux_mesh::MeshError;
+use tetlux_optics::NoDataError;
 use tetlux_optics::preset::PresetError;
 
 /// Why a scene could not be read or made.
@@ -45,6 +46,14 @@ pub enum SceneError {
         path: String,
         /// What is missing and how to give it.
         message: String,
+    },
+    /// Cells without data cannot look so: numbers of a preset, or of a scene that was made in code.
+    #[error("{path}: cells without data: {source}")]
+    NoData {
+        /// The scene file.
+        path: String,
+        /// The number found and what it may be.
+        source: NoDataError,
     },
     /// The preset file does not hold a usable preset.
     #[error("{}: {source}", path.display())]

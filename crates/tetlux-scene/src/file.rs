@@ -8,7 +8,7 @@ use tetlux_mesh::{Component, Location, ScalarField, TetMesh};
 use tetlux_optics::preset::read_preset;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_optics::widget::BivariateFunction;
-use tetlux_optics::{Classification, Emphasis, ImageFunction, Light};
+use tetlux_optics::{Classification, Emphasis, ImageFunction, Light, NoData, Preset};
 
 use crate::{Camera, Emphasized, Lighting, Method, Projection, Scene, SceneError, SurfaceSpec, document, even_opacity};
 
@@ -36,6 +36,10 @@ pub struct SceneFile {
     pub transfer: TransferSource,
     /// Where the first and last node lie.
     pub range: NodeRange,
+    /// Linear RGB of cells without data; none: the preset's, or ParaView's.
+    pub nan_color: Option<[f64; 3]>,
+    /// Their opacity; none: the preset's, or 0: they are left out.
+    pub nan_opacity: Option<f64>,
     /// Light by the gradient of the field.
     pub light: Option<Light>,
     /// Opacity emphasised at the vertices by the field's derivatives.
@@ -212,6 +216,7 @@ impl SceneFile {
         };
         Ok(Scene {
             classification,
+            no_data: self.no_data()?,
             emphasis,
             lighting: self.light.zip(gradients).map(|(light, gradients)| Lighting::new(light, gradients)),
             unit_distance: match self.unit_distance {
@@ -279,13 +284,26 @@ impl SceneFile {
             }
             (TransferSource::Preset { path, name }, range) => {
                 let failed = |source| SceneError::Preset { path: path.clone(), source };
-                let preset = read_preset(&read_text(path)?, name.as_deref()).map_err(failed)?;
-                preset.transfer_function(range).map_err(failed)
+                preset(path, name.as_deref())?.transfer_function(range).map_err(failed)
             }
             (TransferSource::Widgets(_) | TransferSource::Image { .. }, _) => {
                 Err(self.missing("widgets and images are no transfer function of one field".into()))
             }
         }
+    }
+
+    /// What cells without data look like, by the scene or else by the preset.
+    fn no_data(&self) -> Result<NoData, SceneError> {
+        let (color, opacity) = match &self.transfer {
+            TransferSource::Preset { path, name } => {
+                let Preset { nan_color, nan_opacity, .. } = preset(path, name.as_deref())?;
+                (nan_color, nan_opacity)
+            }
+            _ => (None, None),
+        };
+        let color = self.nan_color.or(color).unwrap_or(NoData::LUMINANCE);
+        let opacity = self.nan_opacity.or(opacity).unwrap_or(0.0);
+        NoData::new(color, opacity).map_err(|source| SceneError::NoData { path: self.name.clone(), source })
     }
 
     fn camera(&self, mesh: &TetMesh, number: usize) -> Result<Camera, SceneError> {
@@ -321,6 +339,10 @@ impl SceneFile {
     fn missing(&self, message: String) -> SceneError {
         SceneError::Missing { path: self.name.clone(), message }
     }
+}
+
+fn preset(path: &Path, name: Option<&str>) -> Result<Preset, SceneError> {
+    read_preset(&read_text(path)?, name).map_err(|source| SceneError::Preset { path: path.into(), source })
 }
 
 fn component(number: Option<usize>) -> Component {

@@ -64,7 +64,7 @@ pub use view::View;
 
 use glam::DVec3;
 use tetlux_mesh::ScalarField;
-use tetlux_optics::{Light, TransferFunction};
+use tetlux_optics::{Light, NoData, TransferFunction};
 
 /// Everything about a picture but the mesh.
 #[derive(Debug, Clone)]
@@ -75,6 +75,8 @@ pub struct Scene {
     pub second: Option<ScalarField>,
     /// Luminance and opacity over the scalars.
     pub classification: tetlux_optics::Classification,
+    /// What cells look like that have a value which is not finite, of the scalar or of the second.
+    pub no_data: NoData,
     /// Light by the gradient, and silhouettes.
     pub lighting: Option<Lighting>,
     /// The scalar classified at the vertices, its opacity emphasised there.
@@ -131,6 +133,14 @@ impl Scene {
     /// The luminance, if it is the same wherever something is seen: then the order of cells does not matter.
     pub fn single_luminance(&self) -> Option<[f64; 3]> {
         let shaded = self.lighting.as_ref().is_some_and(|lighting| lighting.light.shades());
-        if shaded { None } else { self.classification.single_luminance() }
+        let single = self.classification.single_luminance().filter(|_| !shaded);
+        let other = !self.seen_without_data().is_empty();
+        single.filter(|luminance| !other || *luminance == self.no_data.luminance())
+    }
+
+    /// The scalars of which values are missing, if cells without data are seen; else none.
+    pub fn seen_without_data(&self) -> Vec<&ScalarField> {
+        let scalars = [Some(&self.scalar), self.second.as_ref()].into_iter().flatten();
+        scalars.filter(|scalar| scalar.missing > 0 && self.no_data.is_visible()).collect()
     }
 }

@@ -105,6 +105,12 @@ impl Plan {
             return Err(SceneError::Method(reason));
         }
         let integrator = choose_integrator(scene)?;
+        if integrator.is_pre_integrated() && !scene.seen_without_data().is_empty() {
+            return Err(SceneError::Method(format!(
+                "integrator \"{integrator}\" looks up the transfer function, which cells without data are beyond: use direct, \
+                 or nan_opacity = 0"
+            )));
+        }
         let (backend, backend_reason) = match method.classification {
             Classification::Vertex if scene.lighting.is_some() => choose_cpu(&method)?,
             _ => choose_backend(&method, device)?,
@@ -162,6 +168,7 @@ impl Plan {
             reasons.push(("target", format!("{target}: {target_reason}")));
         }
         reasons.push(("gradients", of_gradients(scene).into()));
+        reasons.extend(of_no_data(scene).map(|what| ("no data", what)));
         reasons.extend(of_surfaces(scene).map(|what| ("surfaces", what)));
         reasons.push((
             "cells",
@@ -296,6 +303,17 @@ fn choose_cpu(method: &Method) -> Result<(Backend, String), SceneError> {
     }
     let why = if method.backend == Backend::Cpu { "as asked".into() } else { format!("{WHAT} needs it") };
     Ok((Backend::Cpu, why))
+}
+
+/// What cells without data look like, if any are seen.
+fn of_no_data(scene: &Scene) -> Option<String> {
+    let of: Vec<String> =
+        scene.seen_without_data().iter().map(|scalar| format!("{} of \"{}\"", scalar.missing, scalar.name)).collect();
+    let ([r, g, b], opacity) = (scene.no_data.luminance(), scene.no_data.opacity());
+    let values = of.join(", ");
+    (!of.is_empty()).then(|| {
+        format!("values that are not finite ({values}): their cells have opacity {opacity} and colour {r} {g} {b}")
+    })
 }
 
 /// What opaque surfaces there are, if any.

@@ -61,7 +61,7 @@ enum Sight {
 /// Cells that are not drawn, by the first reason that holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Skips {
-    /// A vertex has no finite value: nothing can be classified.
+    /// A vertex has no finite value, and what is without data is not seen.
     pub no_data: usize,
     /// Opacity is zero on the cell's whole scalar range; with an emphasis, at its four vertices.
     pub transparent: usize,
@@ -160,13 +160,13 @@ impl<'a> Planner<'a> {
         let touched = self.touched(scene, first, second);
         let clear = |&v: &u32| colors.is_none_or(|colors| colors.get(v as usize).is_none_or(|color| color[3] <= 0.0));
         let [drop_transparent, drop_outside] = [Skip::Transparent, Skip::Outside].map(|skip| !kept.contains(skip));
-        let transparent = |cell: usize| match &touched {
-            _ if colors.is_some() => self.mesh.cells()[cell].iter().all(clear),
-            Some(touched) => !touched[cell],
-            None => {
-                let (s, g) = (first.cells[cell], second.map_or([0.0; 2], |second| second.cells[cell]));
-                let missing = s[0].is_nan() || g[0].is_nan();
-                missing || !scene.classification.is_visible_over(&Rectangle { s, g })
+        let transparent = |cell: usize| {
+            let (s, g) = (first.cells[cell], second.map_or([0.0; 2], |second| second.cells[cell]));
+            match &touched {
+                _ if s[0].is_nan() || g[0].is_nan() => !scene.no_data.is_visible(),
+                _ if colors.is_some() => self.mesh.cells()[cell].iter().all(clear),
+                Some(touched) => !touched[cell],
+                None => !scene.classification.is_visible_over(&Rectangle { s, g }),
             }
         };
         let dark = dark.as_ref().filter(|_| colors.is_none());
@@ -187,10 +187,13 @@ impl<'a> Planner<'a> {
                 Some([dark, _]) => verdicts.mark_within(s, dark, Verdict::Transparent),
                 None => verdicts.mark(Verdict::Transparent, |i| transparent(start + i)),
             }
-            verdicts.mark(Verdict::NoData, |i| s[i][0].is_nan());
-            if let Some(second) = second {
-                let g = &second.cells[cells];
-                verdicts.mark(Verdict::NoData, |i| g[i][0].is_nan());
+            // Intervals hold no range that is not a number.
+            if !scene.no_data.is_visible() {
+                verdicts.mark(Verdict::NoData, |i| s[i][0].is_nan());
+                if let Some(second) = second {
+                    let g = &second.cells[cells];
+                    verdicts.mark(Verdict::NoData, |i| g[i][0].is_nan());
+                }
             }
         };
         let count = self.mesh.cells().len();

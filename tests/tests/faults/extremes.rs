@@ -8,7 +8,7 @@ use tetlux_tests::{
     Convex, FIELD, Way, composite, mesh_of, mesh_with, orthographic, perspective, plan, render, scene, transfer, white,
 };
 
-use crate::{TOLERANCE, assert_judged, assert_white};
+use crate::{TOLERANCE, assert_judged, assert_white, white_ray};
 
 /// Cameras that see a cube of this middle and width.
 fn cameras(middle: DVec3, width: f64) -> [Camera; 2] {
@@ -107,6 +107,26 @@ fn an_orthographic_eye_in_the_middle_sees_half() {
     // One of the two units of length lies in front.
     let truth = |_, _, _| Some([-(-1.0f64).exp_m1(); 4]);
     assert_judged("half", &mesh, &scene, &Way::ALL, TOLERANCE, truth);
+}
+
+#[test]
+fn fields_of_any_range() {
+    // Up to where differences overflow, and down to where their reciprocals do.
+    let bounds = [DVec3::ZERO, DVec3::ONE];
+    let opacity = [[0.3, 0.0], [0.45, 3.0], [0.5, 0.5], [0.7, 2.0]];
+    for [low, high] in [[0.0, 1e-30], [-1e30, 1e30], [1.0, 1.0 + 1e-12], [0.0, 1e-310], [-1.7e308, 1.7e308]] {
+        let place = |u: f64| low * (1.0 - u) + high * u;
+        let field = |p: DVec3| 0.5 * p.x + 0.5 * p.z;
+        let mesh = mesh_of(&cuboid([4, 3, 4], Split::Six, bounds), |p| place(field(p)));
+        let nodes = opacity.map(|[u, opacity]| [place(u), opacity]);
+        for camera in cameras(DVec3::splat(0.5), 1.0) {
+            let scene = scene(&mesh, white(&nodes), camera, [32, 28]);
+            let truth = |o, d, start| white_ray(&Convex::cuboid(bounds), field, &opacity, 1.0, (o, d, start));
+            // Of 1 + 1e-12 double precision itself leaves four digits.
+            let tolerance = if low == 1.0 { 1e-3 } else { TOLERANCE };
+            assert_judged(&format!("{low:e} to {high:e}"), &mesh, &scene, &Way::ALL, tolerance, truth);
+        }
+    }
 }
 
 /// A mesh of which nothing should be seen, whatever the way.

@@ -12,6 +12,7 @@ mod extremes;
 mod eye_inside;
 mod grid_rays;
 mod layers;
+mod no_data;
 mod random_scenes;
 mod transfer_functions;
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use tetlux_mesh::TetMesh;
-use tetlux_mesh::procedural::{Split, cuboid};
+use tetlux_mesh::procedural::{Parts, Split, cuboid};
 use tetlux_optics::Classification;
 use tetlux_optics::transfer::TransferFunction;
 use tetlux_scene::{Camera, Scene};
@@ -19,8 +19,8 @@ const CASES: u64 = 44;
 /// Width and height of the pictures.
 const SIDE: usize = 96;
 
-/// A grid displaced at random, surface included, with a smooth scalar.
-fn random_mesh(random: &mut Random) -> TetMesh {
+/// A grid displaced at random, surface included.
+pub(super) fn random_parts(random: &mut Random) -> Parts {
     let counts = [0; 3].map(|_| 1 + random.below(4));
     let corner = DVec3::new(random.between(0.5, 2.0), random.between(0.5, 2.0), random.between(0.5, 2.0));
     let split = if random.below(2) == 0 { Split::Five } else { Split::Six };
@@ -31,6 +31,12 @@ fn random_mesh(random: &mut Random) -> TetMesh {
             p[axis] += 2.0 * corner[axis] / counts[axis] as f64 * random.between(-0.125, 0.125);
         }
     }
+    parts
+}
+
+/// The same with a smooth scalar.
+fn random_mesh(random: &mut Random) -> TetMesh {
+    let parts = random_parts(random);
     let wave = DVec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
     let mesh = mesh_of(&parts, |p| wave.dot(p).sin() + 0.3 * p.z);
     assert_eq!((mesh.assembly().cells_inverted, mesh.assembly().faces_folded), (0, 0), "the cells do not overlap");
@@ -76,7 +82,7 @@ fn random_transfer(random: &mut Random, [low, high]: [f64; 2], one_color: bool) 
     transfer(&nodes, &heights)
 }
 
-fn random_camera(random: &mut Random) -> Camera {
+pub(super) fn random_camera(random: &mut Random) -> Camera {
     let mut direction = || DVec3::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
     let (toward, focus) = (direction(), direction() * 0.3);
     // From well outside to deep inside.

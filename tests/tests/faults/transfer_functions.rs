@@ -95,15 +95,34 @@ fn a_peak_inside_one_cell_is_seen() {
 
 #[test]
 fn a_peak_narrower_than_any_table_is_seen() {
-    // A ten-thousandth of the range wide, of area 1.
+    // A ten-thousandth of the range wide, of area 1; and narrower than single precision tells one scalar from the next.
     let mesh = mesh_of(&cuboid([3, 3, 3], Split::Five, UNIT_BOX), |p| p.z);
-    let (at, half) = (0.4321, 0.5e-4);
-    let opacity = [[at - half, 0.0], [at, 1.0 / half], [at + half, 0.0]];
-    // Each cut is off by up to 6e-8 of a half width of 5e-5; first-order errors cancel between the peak's two sides.
+    // Where a ray cuts the corner of a cell its scalars differ by a thousandth, which is known to 6e-8 and divided by.
     let narrow = 2e-4;
-    for camera in cameras() {
-        let scene = scene(&mesh, white(&opacity), camera, [31, 31]);
-        assert_white("narrow peak", &mesh, &scene, &Convex::cuboid(UNIT_BOX), |p| p.z, narrow);
+    for (at, half) in [(0.4321, 0.5e-4), (0.4321, 1e-6), (0.7654, 1e-8), (0.123, 1e-10)] {
+        let opacity = [[at - half, 0.0], [at, 1.0 / half], [at + half, 0.0]];
+        for camera in cameras() {
+            let scene = scene(&mesh, white(&opacity), camera, [31, 31]);
+            let what = format!("peak of half width {half:e}");
+            assert_white(&what, &mesh, &scene, &Convex::cuboid(UNIT_BOX), |p| p.z, narrow);
+        }
+    }
+}
+
+#[test]
+fn a_function_wider_than_the_data_is_not_moved() {
+    // Pieces that begin and end far outside the data: from 8 of its ranges below them to 11 above, and a million.
+    for wide in [1.0, 1e6] {
+        let mesh = mesh_of(&cuboid([3, 3, 3], Split::Six, UNIT_BOX), |p| 40.0 + 5.0 * p.z);
+        let opacity = [[42.0 - 42.0 * wide, 0.0], [42.0, 2.0], [42.0 + 60.0 * wide, 7.0]];
+        let falling = [[42.0 - 42.0 * wide, 1.0], [42.0 + 60.0 * wide, 0.25]];
+        for opacity in [&opacity[..], &falling[..]] {
+            for camera in cameras() {
+                let scene = scene(&mesh, white(opacity), camera, [31, 31]);
+                let field = |p: DVec3| 40.0 + 5.0 * p.z;
+                assert_white("wide function", &mesh, &scene, &Convex::cuboid(UNIT_BOX), field, TOLERANCE);
+            }
+        }
     }
 }
 

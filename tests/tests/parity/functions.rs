@@ -1,5 +1,6 @@
 //! Functions with numbers in them: WGSL on the driver, Rust here, the same inputs bit for bit.
 
+use tetlux_optics::no_data_f32::shade_no_data;
 use tetlux_optics::published_f32::linear_published;
 use tetlux_optics::segment_f32::{mean_depth, opacity, share_before, weights_average, weights_direct};
 use tetlux_optics::symmetric_f32::weights_symmetric;
@@ -321,6 +322,37 @@ fn a_planted_difference_is_seen() {
     let outputs = run(&source, &[], &[1.5, 1.5], 1, 8);
     let twin = weights_direct(1.5, 1.5);
     assert!(agree(outputs[0], twin[0]) && !agree(outputs[1], twin[1]) && !agree(outputs[2], twin[2]));
+}
+
+const NO_DATA_TEST: &str = "
+@group(3) @binding(0) var<storage, read> inputs: array<u32>;
+@group(3) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = 5u * id.x;
+    if i < arrayLength(&inputs) {
+        let row = vec4<u32>(inputs[i], inputs[i + 1u], inputs[i + 2u], inputs[i + 3u]);
+        outputs[id.x] = bitcast<vec4<u32>>(shade_no_data(bitcast<vec4<f32>>(row), bitcast<f32>(inputs[i + 4u])));
+    }
+}
+";
+
+#[test]
+fn segments_without_data() {
+    let mut random = Random::new(23);
+    let rows = ROWS / 4;
+    let mut inputs = Vec::with_capacity(5 * rows);
+    for _ in 0..rows {
+        // Luminances are cleaned where scenes are made; the optical depth here.
+        inputs.extend([0; 3].map(|_| random.between(0.0, 1.0) as f32));
+        inputs.extend([0; 2].map(|_| any_number(&mut random)));
+    }
+    let outputs = run(&(compose("lib::no_data", DEFAULTS).unwrap() + NO_DATA_TEST), &[], &inputs, rows, 4);
+    for (row, found) in inputs.chunks_exact(5).zip(outputs.chunks_exact(4)) {
+        let twin = shade_no_data([row[0], row[1], row[2], row[3]], row[4]);
+        assert!((0..4).all(|k| agree(found[k], twin[k])), "{row:?}: {found:?} and {twin:?}");
+    }
 }
 
 const SHARE_TEST: &str = "

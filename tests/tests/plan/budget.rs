@@ -6,7 +6,7 @@ use tetlux_mesh::procedural::{Split, cuboid};
 use tetlux_optics::TransferFunction;
 use tetlux_scene::{Backend, Integrator, Method, Order, Plan, Scene};
 use tetlux_tests::{
-    FIELD, Random, largest_error, mesh_of, orthographic, perspective, reference, renderer, scene, transfer,
+    FIELD, Random, largest_error, mesh_of, orthographic, perspective, pixel_error, reference, renderer, scene, transfer,
 };
 
 use super::planned;
@@ -116,6 +116,23 @@ fn measured_errors_stay_below_stated_ones_at_every_budget() {
     println!("{kept} budgets kept, {spent} spent, measured up to {closest:.2} of stated");
     assert!(kept > 70, "{kept} of 100 budgets can be kept");
     assert!(spent > 25, "{spent} of 100 budgets are spent");
+}
+
+/// Of a volume that is hardly seen an order left out would change the colour by more than an absolute error shows.
+#[test]
+fn a_thin_volume_errs_by_the_budget_of_what_is_seen_of_it() {
+    let mesh = random_mesh(&mut Random::new(5));
+    let camera = perspective(DVec3::new(4.0, -5.0, 3.0), DVec3::ZERO, 40.0);
+    for opacity in [1e-4, 1e-3, 1e-2] {
+        let two_colors = transfer(&[[-0.5, 1.0, 0.0, 0.2], [0.5, 0.0, 1.0, 1.0]], &[[0.0, opacity]]);
+        let mut scene = scene(&mesh, two_colors, camera, [48, 48]);
+        scene.method.backend = Backend::Cpu;
+        let (_, frame) = planned(&mesh, &scene);
+        let pixels = frame.image.pixels().iter().zip(reference(&mesh, &scene));
+        let relative = |(&found, right): (&[f32; 4], [f64; 4])| pixel_error(found, right) / right[3].max(opacity);
+        let worst = pixels.map(relative).fold(0.0, f64::max);
+        assert!(worst <= scene.method.max_error, "opacity {opacity:e}: {worst:.1e} of what is seen");
+    }
 }
 
 /// Order and integral judged where they are the most of the error: bounds, not luck.

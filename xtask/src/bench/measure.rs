@@ -86,7 +86,7 @@ impl<'a> Course<'a> {
         let device = self.bench.calibration.device(&self.scene, &self.input.mesh, self.renderer)?;
         let mut runner = Runner { name, method, device, tables: Vec::new(), samples: Vec::new() };
         let plan = Plan::new(&self.scene, &self.input.mesh, runner.device.as_ref())?;
-        runner.tables = tables::load_or_build(self.input, &plan)?;
+        runner.tables = tables::load_or_build(self.input, &plan, &mut Vec::new())?;
         let (frame, sample) = self.frame(&runner)?;
         let seconds = sample.first().map_or(0.0, taken);
         self.bench.patience.borrow_mut().note(name, &self.work()?, seconds, &self.input.title);

@@ -14,6 +14,7 @@ pub(super) struct RawPreset {
     pub(super) hsv_wrap: bool,
     pub(super) log_scale: bool,
     pub(super) nan_color: Option<[f64; 3]>,
+    pub(super) nan_opacity: Option<f64>,
     /// (s, r, g, b); at least one.
     pub(super) color: Vec<[f64; 4]>,
     /// (s, opacity, midpoint, sharpness); may be empty.
@@ -42,6 +43,7 @@ struct JsonPreset {
     rgb_points: Option<Vec<f64>>,
     points: Option<Vec<f64>>,
     nan_color: Option<[f64; 3]>,
+    nan_opacity: Option<f64>,
     indexed_colors: Option<serde_json::Value>,
     #[serde(rename = "HSVWrap", default)]
     hsv_wrap: Flag,
@@ -90,6 +92,7 @@ impl JsonPreset {
             hsv_wrap: self.hsv_wrap.is_set(),
             log_scale: self.use_log_scale.is_set(),
             nan_color: self.nan_color,
+            nan_opacity: self.nan_opacity,
             name: self.name,
             color,
             opacity,
@@ -123,7 +126,10 @@ fn parse_xml(text: &str, skipped: usize) -> Result<Vec<Named>, PresetError> {
                     if closed { presets.push(map.finish()) } else { current = Some(map) }
                 }
                 ("Point", Some(map)) => map.point(&element).map_err(fail)?,
-                ("NaN", Some(map)) => map.raw.nan_color = Some(rgb(&element).map_err(fail)?),
+                ("NaN", Some(map)) => {
+                    map.raw.nan_color = Some(rgb(&element).map_err(fail)?);
+                    map.raw.nan_opacity = number(&element, "o").map_err(fail)?;
+                }
                 _ => {}
             },
             Event::End(element) if element.name().as_ref() == "ColorMap" => {

@@ -105,11 +105,13 @@ fn xml_color_maps() {
         format!(
             "<ColorMaps><!-- old --><ColorMap name=\"a &amp; b\" space=\"{space}\">\
              <Point x=\"0\" o=\"1\" r=\"1\" g=\"0.5\" b=\"0\"/><Point x=\"2\" o=\"{last}\" r=\"1\" g=\"0\" b=\"0.5\"/>\
-             <NaN r=\"0\" g=\"0.25\" b=\"1\"/></ColorMap></ColorMaps>"
+             <NaN r=\"0\" g=\"0.25\" b=\"1\" o=\"0.5\"/></ColorMap></ColorMaps>"
         )
     };
     let wrapped = read_preset(&text("Wrapped", 1.0), Some("a & b")).unwrap();
-    assert_eq!(wrapped.nan_color, Some([0.0, 0.25, 1.0]));
+    assert_eq!((wrapped.nan_color, wrapped.nan_opacity), (Some([0.0, 0.25, 1.0]), Some(0.5)));
+    let json = json(r#""NanColor": [0,1,0], "NanOpacity": 0.75, "RGBPoints": [0,0,0,0, 1,1,1,1]"#).unwrap();
+    assert_eq!((json.nan_color, json.nan_opacity), (Some([0.0, 1.0, 0.0]), Some(0.75)));
     // Through red, not through cyan.
     let tf = wrapped.transfer_function(None).unwrap();
     assert!(tf.luminance(1.0)[0] == 1.0 && tf.luminance(1.0)[1] < 1e-14);

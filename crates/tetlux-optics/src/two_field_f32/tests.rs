@@ -67,14 +67,14 @@ fn agrees_with_f64() {
 #[test]
 fn a_scalar_that_stands_still_is_no_trouble() {
     let transfer = lively();
-    let [color, opacity] = axes(&transfer, [[0.0, 1.0]; 2], 1.0);
-    // Luminance at 0.4 from above, opacity 4 at 0.75, over half a unit.
-    let got = integrate(&color, &opacity, [0.4, 0.75], [0.4, 0.75], 0.5);
+    let [color, opacity] = axes(&transfer, [[0.0, 4.0], [0.0, 1.0]], 1.0);
+    // Luminance at 0.4, a tenth of its range, from above, opacity 4 at 0.75, over half a unit.
+    let got = integrate(&color, &opacity, [0.1, 0.75], [0.1, 0.75], 0.5);
     let alpha = 1.0 - (-2.0_f64).exp();
     assert!((f64::from(got[3]) - alpha).abs() < 1e-5);
     assert!((f64::from(got[1]) - alpha).abs() < 1e-5, "{got:?}");
     // The colour runs on alone, over a step: half of it red 0.1 and so on, mean by alpha.
-    let got = integrate(&color, &opacity, [0.4, 0.75], [3.0, 0.75], 1e-3);
+    let got = integrate(&color, &opacity, [0.1, 0.75], [0.75, 0.75], 1e-3);
     let alpha = 1.0 - (-4e-3_f64).exp();
     assert!((f64::from(got[3]) - alpha).abs() < 1e-6);
     // Red from 0.2 to 1.0: in a thin segment the mean.

@@ -40,7 +40,7 @@ fn views() -> [View; 4] {
 
 fn drawn(surface: &Surface, view: &View) -> (Backdrop, EyeSpace, f64) {
     let mesh = mesh();
-    let device = DeviceMesh::new(&mesh, &mesh.scalar("s", Component::Magnitude).unwrap());
+    let device = DeviceMesh::new(&mesh, &mesh.scalar("s", Component::Magnitude).unwrap(), &[]);
     let eye = EyeSpace::new(view, &mesh, &device);
     let backdrop = Backdrop::new(std::slice::from_ref(surface), &eye, device.scale, view.size);
     (backdrop, eye, device.scale)

@@ -127,12 +127,17 @@ pub(crate) struct LookUniform {
     pub(crate) emission: f32,
     pub(crate) unit: f32,
     pub(crate) unused: [f32; 2],
+    pub(crate) no_data: [f32; 4],
 }
 
 impl LookUniform {
     fn new(look: &Look) -> LookUniform {
-        let mut uniform =
-            LookUniform { errors: [look.color_error, 0.0], emission: look.emission, ..LookUniform::default() };
+        let mut uniform = LookUniform {
+            errors: [look.color_error, 0.0],
+            emission: look.emission,
+            no_data: look.no_data,
+            ..LookUniform::default()
+        };
         if let Some(Published::Approximate { pieces, unit, .. }) = look.published {
             (uniform.pieces, uniform.unit) = (pieces, unit);
         }

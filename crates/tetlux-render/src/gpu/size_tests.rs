@@ -10,6 +10,7 @@ use tetlux_scene::{Backend, Camera, CellProjection, Method, Scene};
 use super::frame::batch_size;
 use super::*;
 use crate::Renderer;
+use crate::device_mesh::Data;
 
 const MIB: u64 = 1 << 20;
 /// Less than this leaves devices idle between batches.
@@ -28,6 +29,7 @@ fn scene(mesh: &TetMesh) -> Scene {
     Scene {
         scalar: mesh.scalar("s", Component::Magnitude).unwrap(),
         second: None,
+        no_data: tetlux_optics::NoData::default(),
         classification: Classification::OneField(transfer.unwrap()),
         lighting: None,
         emphasis: None,
@@ -58,7 +60,7 @@ fn eight_million_cells_fit_two_gibibytes() {
         let mut scene = scene(&mesh);
         scene.method.projection = projection;
         let plan = Plan::new(&scene, &mesh, Renderer::new().device()).unwrap();
-        let geometry = Variant::new(&plan, false, None, false).geometry();
+        let geometry = Variant::new(&plan, Data::Point, None, false).geometry();
         let batch = u64::from(batch_size(&least(), &geometry));
         assert!(batch * geometry.bytes <= least().max_storage_buffer_binding_size);
         assert!(batch >= FEW, "{projection}: {batch} cells a batch are few");

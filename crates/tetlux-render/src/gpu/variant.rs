@@ -4,6 +4,7 @@ use tetlux_scene::{CellProjection, Classification, Integrator, Interpolation, Pl
 use tetlux_shaders::{Choice, DEFAULTS, choose};
 
 use super::look::LookVariant;
+use crate::device_mesh::Data;
 
 /// What makes one set of pipelines differ from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -11,7 +12,7 @@ pub(crate) struct Variant {
     /// It draws cells without an order among themselves, sorted for every pixel.
     pub(crate) group: bool,
     pub(crate) orthographic: bool,
-    pub(crate) cell_data: bool,
+    pub(crate) data: Data,
     /// What there is beyond one field's transfer function.
     pub(crate) look: Option<LookVariant>,
     /// Luminance and extinction of the vertices are given.
@@ -88,11 +89,11 @@ impl Binding {
 }
 
 impl Variant {
-    pub(crate) fn new(plan: &Plan, cell_data: bool, look: Option<LookVariant>, surfaces: bool) -> Variant {
+    pub(crate) fn new(plan: &Plan, data: Data, look: Option<LookVariant>, surfaces: bool) -> Variant {
         Variant {
             group: false,
             orthographic: plan.view.orthographic,
-            cell_data,
+            data,
             look,
             given: plan.colors.is_some(),
             projection: plan.projection,
@@ -161,7 +162,11 @@ impl Variant {
         };
         let grouping = if self.group { "grouping::sorted" } else { "grouping::none" };
         let attributes = if self.given { "attributes::given" } else { "attributes::classified" };
-        let data = if self.cell_data { "data::cell" } else { "data::point" };
+        let data = match self.data {
+            Data::Point => "data::point",
+            Data::Cell => "data::cell",
+            Data::Mixed => "data::mixed",
+        };
         let surface = if self.surfaces { "surface::opaque" } else { "surface::none" };
         let output = match self.target {
             Target::Rgba8 => "output::straight",
@@ -219,7 +224,7 @@ impl Variant {
             bindings.push(Binding::Pieces);
         }
         bindings.extend([Binding::Points, Binding::Cells]);
-        if self.cell_data {
+        if self.data != Data::Point {
             bindings.push(Binding::CellScalars);
         }
         if self.projection != CellProjection::March {
@@ -283,6 +288,8 @@ mod tests {
     use super::super::look::Classified;
     use super::*;
 
+    const DATA: [Data; 3] = [Data::Point, Data::Cell, Data::Mixed];
+
     /// Every variant that a method which is not refused can have.
     fn variants() -> Vec<Variant> {
         let mut variants = Vec::new();
@@ -298,11 +305,11 @@ mod tests {
                             && classification != Classification::Auto;
                         if decided && !integrator.is_for_two_fields() && method.refusal().is_none() {
                             let target = Target::ALL[variants.len() % Target::ALL.len()];
-                            let [orthographic, cell_data] = [1, 2].map(|bit| variants.len() & bit != 0);
+                            let orthographic = variants.len() % 2 != 0;
                             let variant = Variant {
                                 group: false,
                                 orthographic,
-                                cell_data,
+                                data: DATA[variants.len() % DATA.len()],
                                 look: None,
                                 given: false,
                                 projection,
@@ -314,7 +321,8 @@ mod tests {
                             };
                             variants.push(variant);
                             if classification == Classification::Vertex {
-                                variants.push(Variant { given: true, cell_data: false, ..variant });
+                                let data = [Data::Point, Data::Mixed][variants.len() % 2];
+                                variants.push(Variant { given: true, data, ..variant });
                             }
                         }
                     }
@@ -344,7 +352,7 @@ mod tests {
                     let variant = Variant {
                         group: false,
                         orthographic: false,
-                        cell_data: looks.len() % 3 == 0,
+                        data: DATA[looks.len() % DATA.len()],
                         look: Some(LookVariant { function, second_by_cell, lit }),
                         given: false,
                         surfaces: looks.len() % 2 == 0,
@@ -384,14 +392,14 @@ mod tests {
             if !decided || integrator.is_for_two_fields() || method.refusal().is_some() {
                 continue;
             }
-            for cell_data in [false, true] {
+            for data in DATA {
                 let variant = Variant {
                     group: false,
-                    orthographic: cell_data,
-                    cell_data,
+                    orthographic: data == Data::Cell,
+                    data,
                     look: None,
                     given: false,
-                    surfaces: !cell_data,
+                    surfaces: data != Data::Cell,
                     projection,
                     interpolation: Interpolation::Ray,
                     integrator,

@@ -28,6 +28,7 @@ fn scene(mesh: &TetMesh, classification: Classification, light: Option<Light>) -
     let gradients = || mesh.vertex_gradients(&scalar);
     Scene {
         second: Some(mesh.scalar("g", Component::Magnitude).unwrap()),
+        no_data: tetlux_optics::NoData::default(),
         lighting: light.map(|light| Lighting { light, gradients: gradients() }),
         emphasis: None,
         surfaces: Vec::new(),
@@ -48,7 +49,7 @@ fn scene(mesh: &TetMesh, classification: Classification, light: Option<Light>) -
 }
 
 fn look(mesh: &TetMesh, scene: &Scene) -> Result<Option<Look>, RenderError> {
-    let device = DeviceMesh::new(mesh, &scene.scalar);
+    let device = DeviceMesh::new(mesh, &scene.scalar, &[]);
     let eye = EyeSpace::new(&scene.camera.view(scene.size).unwrap(), mesh, &device);
     let pieces = transfer_f32::pieces(&transfer(), scene.scalar.range, 1.0);
     Look::new(scene, mesh.points().len(), &eye, (&pieces, Weights::Direct), None, 1.0, None, 1.0)

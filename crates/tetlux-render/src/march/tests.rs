@@ -70,7 +70,7 @@ fn row() -> (TetMesh, View) {
 }
 
 fn march_of(mesh: &TetMesh, view: &View, drawn: &[u32]) -> March {
-    let device = DeviceMesh::new(mesh, &mesh.scalar("x", Component::Magnitude).unwrap());
+    let device = DeviceMesh::new(mesh, &mesh.scalar("x", Component::Magnitude).unwrap(), &[]);
     let lens = Lens { view: DeviceView::new(view, mesh, &device), orthographic: view.orthographic };
     March::new(mesh, &device, &lens, drawn, view.size)
 }

@@ -21,6 +21,8 @@ pub(crate) struct Ramp {
     slope: [f32; 4],
     /// Ends of the piece.
     pub(crate) ends: [f32; 2],
+    /// Its width, of more digits than the ends.
+    width: f32,
     /// Its luminance is constant: where in a segment the light comes from does not matter.
     flat: bool,
 }
@@ -38,7 +40,9 @@ impl Ramp {
         let (low, high) = (limited(piece.low), limited(piece.high));
         let slope = std::array::from_fn(|i| (high[i] - low[i]) * piece.s[2]);
         let flat = !all_weights && low[..3] == high[..3];
-        Ramp { low, slope, ends: [piece.s[0].max(BEYOND[0]), piece.s[1].min(BEYOND[1])], flat }
+        let ends = [piece.s[0].max(BEYOND[0]), piece.s[1].min(BEYOND[1])];
+        let width = if piece.s[3] > 0.0 { piece.s[3] } else { ends[1] - ends[0] };
+        Ramp { low, slope, ends, width, flat }
     }
 
     /// Whether it is transparent throughout.
@@ -220,21 +224,32 @@ pub(crate) fn add_cut_segment<S: Simd>(
     let falling = change.simd_lt(0.0);
     let zero = S::f32s::splat(simd, 0.0);
     // Where the scalar is constant, any large slope makes the piece that begins at or below it the whole segment.
-    let per_scalar = S::f32s::splat(simd, 1.0) / change.max(-change).max(1e-20);
+    let per_width = S::f32s::splat(simd, 1.0) / change.max(-change).max(1e-20);
     let one = S::f32s::splat(simd, 1.0);
     // Front to back the pieces ascend where the scalar rises, and descend where it falls.
     for (length, descend) in [(falling.select(zero, length), false), (falling.select(length, zero), true)] {
         if !length.simd_gt(0.0).any_true() {
             continue;
         }
-        let per_scalar = if descend { -per_scalar } else { per_scalar };
+        let per_scalar = if descend { -per_width } else { per_width };
         let mut begin = zero;
         for step in 1..=ramps.len() {
             let ramp = &ramps[if descend { ramps.len() - step } else { step - 1 }];
             let cut = ramp.ends[usize::from(!descend)] - base;
             let share = (S::f32s::splat(simd, cut) - front) * per_scalar;
             let end = if step < ramps.len() { share.max(0.0).min(1.0) } else { one };
-            add_part(simd, ramp, base, model, front, back, (end - begin) * length, pixels);
+            // Where a piece is entered and left it has its own ends and width, however narrow it is.
+            let (entered, left) = (begin.simd_gt(0.0), end.simd_lt(1.0));
+            let part = (entered & left).select((per_width * ramp.width).min(1.0), end - begin) * length;
+            if !ramp.is_empty() && part.simd_gt(0.0).any_true() {
+                let low = ramp.ends[0] - base;
+                let inside = |s: S::f32s| (s - low).max(0.0).min(ramp.width);
+                let [near, far] =
+                    if descend { [ramp.width, 0.0] } else { [0.0, ramp.width] }.map(|s| S::f32s::splat(simd, s));
+                let (front, back) = (entered.select(near, inside(front)), left.select(far, inside(back)));
+                let half = S::f32s::splat(simd, 0.5);
+                add_segment(simd, ramp, model, (front + back) * half, (back - front) * half, part, pixels);
+            }
             begin = end;
         }
     }
@@ -259,26 +274,4 @@ pub(crate) fn only<S: Simd>(
         }
     }
     None
-}
-
-/// Composites the part of a segment that lies on one of several pieces.
-#[inline(always)]
-fn add_part<S: Simd>(
-    simd: S,
-    ramp: &Ramp,
-    base: f32,
-    model: Weights,
-    front: S::f32s,
-    back: S::f32s,
-    length: S::f32s,
-    pixels: &mut Pixels<S>,
-) {
-    if ramp.is_empty() || !length.simd_gt(0.0).any_true() {
-        return;
-    }
-    let (low, high) = (ramp.ends[0] - base, ramp.ends[1] - base);
-    let front = front.max(low).min(high) - low;
-    let back = back.max(low).min(high) - low;
-    let half = S::f32s::splat(simd, 0.5);
-    add_segment(simd, ramp, model, (front + back) * half, (back - front) * half, length, pixels);
 }

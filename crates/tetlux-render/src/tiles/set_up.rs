@@ -3,7 +3,7 @@
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, SimdNarrow, dispatch};
 use glam::DVec3;
 use rayon::prelude::*;
-use tetlux_mesh::ScalarField;
+use tetlux_mesh::{Location, ScalarField};
 use tetlux_optics::transfer_f32::{Piece, piece_at};
 
 use super::bins::TILE;
@@ -45,7 +45,7 @@ pub(crate) const STEEPEST: f64 = 1e20;
 pub(crate) fn points(mesh: &DeviceMesh, scalar: &ScalarField, eye: &EyeSpace) -> Vec<Point> {
     let point = |(i, &[x, y, z, _]): (usize, &[f32; 4])| {
         let frame = eye.frame(DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
-        let scalar = if mesh.cell_scalars.is_empty() { normalised(scalar, scalar.values[i]) } else { 0.0 };
+        let scalar = if scalar.location == Location::Point { normalised(scalar, scalar.values[i]) } else { 0.0 };
         Point { frame, pixel: eye.pixel_of(frame + eye.offset), scalar }
     };
     mesh.points.par_iter().enumerate().map(point).collect()
@@ -304,8 +304,8 @@ impl SetUp<'_> {
         a.min(b).min(c.min(d)).narrow(a.max(b).max(c.max(d))).store_slice(&mut ends[..2 * lanes]);
         let mut base = [0.0; WIDEST];
         for (lane, record) in records.iter_mut().enumerate() {
-            let (least, most) = match self.mesh.cell_scalars.get(cells[lane] as usize) {
-                Some(&s) => (s, s),
+            let (least, most) = match self.mesh.own_scalar(cells[lane]) {
+                Some(s) => (s, s),
                 None => (ends[lane], ends[lanes + lane]),
             };
             (record.base, record.range) = (least, most - least);

@@ -48,6 +48,7 @@ impl Drawing {
         let scene = Scene {
             scalar,
             second,
+            no_data: tetlux_optics::NoData::default(),
             classification,
             lighting,
             emphasis,
@@ -59,7 +60,7 @@ impl Drawing {
             method,
         };
         let view = scene.camera.view(size).unwrap();
-        let device = Arc::new(DeviceMesh::new(&mesh, &scene.scalar));
+        let device = Arc::new(DeviceMesh::new(&mesh, &scene.scalar, &[]));
         Drawing { mesh, transfer, scene, view, device }
     }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Deserialize;
+use tetlux_optics::NoData;
 use tetlux_optics::transfer::{ColorNode, NodeKind, OpacityNode, TransferFunction, TransferFunctionError};
 use tetlux_optics::widget::BivariateFunction;
 use toml::Spanned;
@@ -36,6 +37,9 @@ pub(super) struct Transfer {
     image: Option<PathBuf>,
     image_range: Option<Spanned<[[f64; 2]; 2]>>,
     max_opacity: Option<Spanned<f64>>,
+    /// Cells without data.
+    nan_color: Option<Spanned<[f64; 3]>>,
+    nan_opacity: Option<Spanned<f64>>,
 }
 
 impl Source<'_> {
@@ -50,6 +54,24 @@ impl Source<'_> {
             (None, Some(share), _) => Ok(UnitDistance::OfDiagonal(share)),
             (None, None, _) => Ok(UnitDistance::MeanEdge),
         }
+    }
+
+    /// The colour of cells without data, if it is given.
+    pub(super) fn nan_color(&self, transfer: &Transfer) -> Result<Option<[f64; 3]>, SceneError> {
+        let check = |at: &Spanned<[f64; 3]>| match NoData::new(*at.get_ref(), 0.0) {
+            Ok(look) => Ok(look.luminance()),
+            Err(error) => Err(self.value(at, "nan_color", error.to_string())),
+        };
+        transfer.nan_color.as_ref().map(check).transpose()
+    }
+
+    /// Their opacity, if it is given.
+    pub(super) fn nan_opacity(&self, transfer: &Transfer) -> Result<Option<f64>, SceneError> {
+        let check = |at: &Spanned<f64>| match NoData::new(NoData::LUMINANCE, *at.get_ref()) {
+            Ok(look) => Ok(look.opacity()),
+            Err(error) => Err(self.value(at, "nan_opacity", error.to_string())),
+        };
+        transfer.nan_opacity.as_ref().map(check).transpose()
     }
 
     pub(super) fn range(&self, transfer: &Spanned<Transfer>) -> Result<NodeRange, SceneError> {

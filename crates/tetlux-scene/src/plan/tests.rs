@@ -26,6 +26,7 @@ fn scene(mesh: &TetMesh, color: &[[f64; 3]], method: Method) -> Scene {
     Scene {
         scalar: mesh.scalar("x", Component::Magnitude).unwrap(),
         second: None,
+        no_data: tetlux_optics::NoData::default(),
         // Transparent up to 2.
         classification: Classification::OneField(
             TransferFunction::new(

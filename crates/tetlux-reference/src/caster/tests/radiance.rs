@@ -150,6 +150,30 @@ fn layers_are_composed_front_to_back() {
 }
 
 #[test]
+fn a_cell_of_missing_data_has_the_look_that_it_is_given() {
+    // Two cubes one behind the other; the nearer one has no data in its cells, or none at one of its far corners.
+    let corners = [[0.0; 3], [1.0, 1.0, 2.0]];
+    let parts = block(corners, [1, 1, 2]);
+    let (near, far, opacity) = (0.4_f64, 0.3_f64, [0.25, 1.0, 3.0]);
+    let no_data = NoData::new(opacity, near).unwrap();
+    let fog = fog(far);
+    let cells = (0..12).map(|c| if c < 6 { [f64::NAN, f64::INFINITY][c % 2] } else { 0.0 }).collect();
+    for body in [
+        Body::by_cell(&parts, cells),
+        Body::by_point(&parts, |p| if p.z == 0.0 && p.x == p.y { f64::NEG_INFINITY } else { 0.0 }),
+    ] {
+        let caster = body.caster(&fog).with_no_data(no_data);
+        let seen = caster.cast(&ray([0.45, 0.4, -1.0], [0.0, 0.0, 1.0]));
+        let behind = (-near).exp() * -(-far).exp_m1();
+        assert!((depth(seen) - near - far).abs() < ROUNDING);
+        for channel in 0..3 {
+            let expected = -(-near).exp_m1() * opacity[channel] + behind;
+            assert!((seen.color[channel] - expected).abs() < 1e-10, "{:?}", seen.color);
+        }
+    }
+}
+
+#[test]
 fn a_cell_of_missing_data_is_clear() {
     let parts = block([[0.0; 3], [1.0, 1.0, 2.0]], [1, 1, 2]);
     let fog = fog(1.0);

@@ -55,6 +55,7 @@ fn block() -> (TetMesh, Scene) {
     let scene = Scene {
         scalar: mesh.scalar("s", Component::Magnitude).unwrap(),
         second: None,
+        no_data: tetlux_optics::NoData::default(),
         classification: Classification::OneField(transfer),
         lighting: None,
         emphasis: None,
