@@ -5,8 +5,10 @@ use glam::DVec3;
 use tetlux_mesh::procedural::{Parts, Split, cuboid};
 use tetlux_scene::Camera;
 
-use super::{input, orthographic, perspective};
+use super::cells::GRADING;
+use super::{COLOR, count, input, orthographic, perspective, specimen};
 use crate::input::Input;
+use crate::testbed::meshes::{graded_from, log_radius_from, transfer};
 
 /// A box of three cubes a side, vertices on whole numbers.
 fn cube() -> Parts {
@@ -49,4 +51,23 @@ pub(super) fn near(short: bool, near: f64) -> Result<Input> {
 pub(super) fn wide(short: bool, view_angle: f64) -> Result<Input> {
     let place = DVec3::new(1.3, 1.55, 1.21);
     seen(short, perspective(place, place + SOMEWHERE, view_angle))
+}
+
+/// A medium whose extinction falls as the distance from the middle grows: as opaque from each decade to the next.
+pub(super) fn smallest(short: bool) -> Result<Input> {
+    let parts = graded_from(GRADING, count(short, 8, 4));
+    let eye = DVec3::new(3e-7, 2e-7, 1e-7);
+    let field = |p: DVec3| log_radius_from(GRADING, p) / 1.05;
+    const NODES: u32 = 12;
+    let opacity: Vec<[f64; 2]> = (0..=NODES)
+        .map(|i| {
+            let s = f64::from(i) / f64::from(NODES);
+            // The radius at which the field is s.
+            let r = GRADING * ((s * 1.05) * GRADING.recip().ln_1p()).exp();
+            [s, 0.1 / r]
+        })
+        .collect();
+    let mut specimen = specimen(parts, field, perspective(eye, eye + SOMEWHERE, 80.0), short)?;
+    specimen.transfer = transfer(&COLOR, &opacity)?;
+    specimen.input("stress", "")
 }
