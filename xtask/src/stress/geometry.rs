@@ -46,7 +46,7 @@ pub(crate) const CASES: &[Case] = cases! {
     "eye-on-face", "the eye in a face inside, two more planes of faces through it", |short| eye::at(short, DVec3::new(1.25, 1.625, 2.0));
     "eye-in-cell", "the eye in a cell", |short| eye::at(short, DVec3::new(1.3, 1.55, 1.21));
     "eye-beside-vertex", "the eye 1e-6 from a vertex inside", |short| eye::at(short, DVec3::new(1.000_001, 1.999_999, 1.000_000_5));
-    "eye-in-smallest-cell", "the eye in a cell of 1e-6 among others up to 1, all as opaque as they are small", eye::smallest;
+    "eye-in-smallest-cell", "the eye in a cell of 1e-4 among others up to 1, as opaque as they are small", eye::in_smallest;
     "eye-on-surface", "the eye on the mesh's surface, looking in", |short| eye::at(short, DVec3::new(0.0, 1.5, 1.5));
     "eye-on-corner", "the eye on the mesh's corner, looking along its edge", eye::on_corner;
     "eye-in-plane", "the eye outside, in the planes of inner faces", eye::in_plane;

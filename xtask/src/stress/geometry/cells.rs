@@ -97,7 +97,7 @@ pub(super) fn long(short: bool) -> Result<Input> {
 }
 
 /// The shortest edge of the graded mesh, its longest about 1.
-pub(super) const GRADING: f64 = 1e-6;
+const GRADING: f64 = 1e-6;
 
 pub(super) fn graded(short: bool) -> Result<Input> {
     let parts = graded_from(GRADING, count(short, 8, 4));

@@ -5,7 +5,6 @@ use glam::DVec3;
 use tetlux_mesh::procedural::{Parts, Split, cuboid};
 use tetlux_scene::Camera;
 
-use super::cells::GRADING;
 use super::{COLOR, count, input, orthographic, perspective, specimen};
 use crate::input::Input;
 use crate::testbed::meshes::{graded_from, log_radius_from, transfer};
@@ -54,20 +53,20 @@ pub(super) fn wide(short: bool, view_angle: f64) -> Result<Input> {
 }
 
 /// A medium whose extinction falls as the distance from the middle grows: as opaque from each decade to the next.
-pub(super) fn smallest(short: bool) -> Result<Input> {
-    let parts = graded_from(GRADING, count(short, 8, 4));
-    let eye = DVec3::new(3e-7, 2e-7, 1e-7);
-    let field = |p: DVec3| log_radius_from(GRADING, p) / 1.05;
+pub(super) fn in_smallest(short: bool) -> Result<Input> {
+    const SMALLEST: f64 = 1e-4;
     const NODES: u32 = 12;
-    let opacity: Vec<[f64; 2]> = (0..=NODES)
-        .map(|i| {
-            let s = f64::from(i) / f64::from(NODES);
-            // The radius at which the field is s.
-            let r = GRADING * ((s * 1.05) * GRADING.recip().ln_1p()).exp();
-            [s, 0.1 / r]
-        })
-        .collect();
+    // sqrt(3) at the corners makes 1.06.
+    const LARGEST: f64 = 1.1;
+    let parts = graded_from(SMALLEST, count(short, 8, 4));
+    let eye = DVec3::new(3.0, 2.0, 1.0) * (0.1 * SMALLEST);
+    let field = |p: DVec3| log_radius_from(SMALLEST, p) / LARGEST;
+    let opacity = |i: u32| {
+        let s = f64::from(i) / f64::from(NODES);
+        let radius = SMALLEST * (s * LARGEST * SMALLEST.recip().ln_1p()).exp_m1();
+        [s, 0.1 / (radius + SMALLEST)]
+    };
     let mut specimen = specimen(parts, field, perspective(eye, eye + SOMEWHERE, 80.0), short)?;
-    specimen.transfer = transfer(&COLOR, &opacity)?;
+    specimen.transfer = transfer(&COLOR, &(0..=NODES).map(opacity).collect::<Vec<_>>())?;
     specimen.input("stress", "")
 }
