@@ -13,7 +13,7 @@
 // A cell may be a thousandth of the mesh wide and a thousandth of that thick: what it is made of are differences of the
 // mesh's own positions, which are exact to their last digit, and the difference of a pixel from the vertex that the
 // cell's planes have their origin at, of which the host knows the last digits.
-import package::lib::view::{View, Vertex, view, ORTHOGRAPHIC, rotated, deeper};
+import package::lib::view::{View, Vertex, view, ORTHOGRAPHIC, rotated, from_pivot, deeper};
 
 struct Cell {
     // The plane of the face opposite each vertex: (dw/dx, dw/dy, w at the plane's origin, +1 front or -1 back). An origin
@@ -83,7 +83,8 @@ fn farthest_vertex(v: array<Vertex, 4>, s: vec4<f32>) -> Far {
     return far;
 }
 
-// Planes within this angle (in radians, roughly) of edge-on count as edge-on.
+// Planes whose distance from the eye is this share of the terms that it is the sum of count as edge-on: rounding leaves
+// that much of it.
 const EDGE_ON = 1e-6;
 
 // A ray in a plane that is seen edge-on is taken for one this many pixels away: then all faces that meet in an edge
@@ -105,27 +106,47 @@ fn face_normal(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
     return cross(ab, ac);
 }
 
+// How far the eye is on the side of the face a, b, c that its normal points away from, times the normal's length; and the
+// sum of the terms without their signs. From the vertex that is least, and in the mesh's own axes: one along which a face
+// runs adds nothing, not even rounding, however long the face is.
+fn side_of_eye(a: Vertex, b: Vertex, c: Vertex, normal: vec3<f32>, turned: vec3<f32>) -> vec2<f32> {
+    let from_a = normal * from_pivot(a.position);
+    let from_b = normal * from_pivot(b.position);
+    let from_c = normal * from_pivot(c.position);
+    let one = vec3<f32>(1.0);
+    let sums = vec3<f32>(dot(abs(from_a), one), dot(abs(from_b), one), dot(abs(from_c), one));
+    var least = from_a;
+    if sums.y < sums.x {
+        least = from_b;
+    }
+    if sums.z < min(sums.x, sums.y) {
+        least = from_c;
+    }
+    let aside = turned * vec3<f32>(view.right.w, view.down.w, view.forward.w);
+    return vec2<f32>(dot(least, one) + dot(aside, one), min(sums.x, min(sums.y, sums.z)) + dot(abs(aside), one));
+}
+
 // Plane of the face a, b, c, its vertices in ascending order of index; `inward` is +1 if (b-a) x (c-a) points into the
 // cell and -1 if out of it; `depth` is that of w = 0; the third component is w at the rounded pixel of `origin`, less
 // that of `origin` itself.
 fn face_plane(a: Vertex, b: Vertex, c: Vertex, inward: f32, depth: f32, origin: Vertex) -> vec4<f32> {
     let normal = face_normal(a.position, b.position, c.position);
     let n = rotated(normal);
-    // Positive if the eye is on the side that n points away from.
-    var side = dot(n, a.eye);
+    // Positive if the eye is on the side that n points away from, and of terms up to this.
+    var side = side_of_eye(a, b, c, normal, n);
     let reach = max(max(abs(a.eye), abs(b.eye)), abs(c.eye));
     var scale = dot(abs(n), vec3<f32>(1.0)) * max(max(reach.x, reach.y), reach.z);
     var rise = depth * view.pixel;
     if ORTHOGRAPHIC {
-        side = n.z;
         scale = abs(n.x) + abs(n.y);
+        side = vec2<f32>(n.z, scale);
         rise = view.pixel;
     }
     // Seen edge-on the plane bounds nothing but the silhouette: any large slope of the right sign does, and both cells
     // at the face choose the same.
-    let edge_on = abs(side) <= EDGE_ON * scale;
-    let divisor = max(select(abs(side), 1e-12 * scale, edge_on), 1e-30);
-    let toward = select(-1.0, 1.0, side >= 0.0);
+    let edge_on = abs(side.x) <= EDGE_ON * side.y;
+    let divisor = max(select(abs(side.x), 1e-12 * scale, edge_on), 1e-30);
+    let toward = select(-1.0, 1.0, side.x >= 0.0);
     let slope = clamp(n.xy * (rise * toward / divisor), vec2<f32>(-STEEPEST), vec2<f32>(STEEPEST));
     let aside = select(vec2<f32>(0.0), NUDGE, edge_on) - origin.rest;
     let offset = dot(normal, origin.position - a.position) * toward / divisor + dot(slope, aside);

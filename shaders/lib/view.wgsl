@@ -42,9 +42,14 @@ fn rotated(direction: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(dot(view.right.xyz, direction), dot(view.down.xyz, direction), dot(view.forward.xyz, direction));
 }
 
-// A position relative to the pivot, in the axes of eye space.
+// A position relative to the pivot.
+fn from_pivot(position: vec3<f32>) -> vec3<f32> {
+    return (position - view.pivot_high.xyz) - view.pivot_low.xyz;
+}
+
+// The same in the axes of eye space.
 fn frame_of(position: vec3<f32>) -> vec3<f32> {
-    return rotated((position - view.pivot_high.xyz) - view.pivot_low.xyz);
+    return rotated(from_pivot(position));
 }
 
 // A point of the mesh as it is seen; the host finds it in double precision.

@@ -11,35 +11,78 @@ import package::lib::view::{view, ORTHOGRAPHIC};
 import package::lib::cell::{NUDGE};
 import package::axes::quantity::{Quantity};
 
+// Projected is onto two axes of eye space, along the third, which is the ray's main one: a ray far aside in a wide view
+// passes all of the mesh at next to no depth.
 struct Ray {
-    // The direction's components across the view; the one along it is 1.
-    slope: vec2<f32>,
-    // Offset of the view's pivot.
+    // A product with a position relative to the pivot is the position's offset.
+    right: vec3<f32>,
+    down: vec3<f32>,
+    // Offset of the pivot.
     pivot: vec2<f32>,
+    // The product with a position is the distance along the ray at which it is passed.
+    along: vec3<f32>,
+    // Depth from the pivot is the distance times the first plus the second.
+    depth: vec2<f32>,
 }
 
 // A vertex as a ray sees it.
 struct Corner {
     name: u32,
     offset: vec2<f32>,
-    // Depth from the pivot, in device units.
-    depth: f32,
+    // Distance along the ray, in device units, from where the pivot is passed.
+    distance: f32,
     value: Quantity,
 }
 
 // The ray through a place in pixels from the picture's middle.
 fn ray_through(at: vec2<f32>) -> Ray {
     let aside = at * view.pixel;
-    let pivot = vec2<f32>(view.right.w, view.down.w);
+    let eye = vec3<f32>(view.right.w, view.down.w, view.forward.w);
     if ORTHOGRAPHIC {
-        return Ray(vec2<f32>(0.0), pivot - aside);
+        let x = vec3<f32>(1.0, 0.0, 0.0);
+        let y = vec3<f32>(0.0, 1.0, 0.0);
+        return Ray(x, y, eye.xy - aside, vec3<f32>(0.0, 0.0, 1.0), vec2<f32>(1.0, 0.0));
     }
-    return Ray(aside, pivot - aside * view.forward.w);
+    let direction = vec3<f32>(aside, 1.0);
+    // The axes x, y and z in turn, so that x and y still turn the same way about the ray.
+    var x = vec3<f32>(1.0, 0.0, 0.0);
+    var y = vec3<f32>(0.0, 1.0, 0.0);
+    var z = vec3<f32>(0.0, 0.0, 1.0);
+    if max(abs(aside.x), abs(aside.y)) > 1.0 {
+        let old = z;
+        if abs(aside.x) >= abs(aside.y) {
+            z = x;
+            x = y;
+            y = old;
+        } else {
+            z = y;
+            y = x;
+            x = old;
+        }
+        if dot(z, direction) < 0.0 {
+            let other = x;
+            x = y;
+            y = other;
+            z = -z;
+        }
+    }
+    let per_main = 1.0 / dot(z, direction);
+    let right = x - z * (dot(x, direction) * per_main);
+    let down = y - z * (dot(y, direction) * per_main);
+    let pivot = vec2<f32>(dot(right, eye), dot(down, eye));
+    let stretch = length(direction);
+    let depth = vec2<f32>(1.0 / stretch, -(x.z * pivot.x + y.z * pivot.y));
+    return Ray(right, down, pivot, z * (stretch * per_main), depth);
 }
 
 // The offset of a position relative to the pivot, in the axes of eye space.
 fn offset_from(ray: Ray, frame: vec3<f32>) -> vec2<f32> {
-    return frame.xy - frame.z * ray.slope + ray.pivot;
+    return vec2<f32>(dot(ray.right, frame), dot(ray.down, frame)) + ray.pivot;
+}
+
+// Depth from the pivot of the ray's point at a distance.
+fn depth_at(ray: Ray, distance: f32) -> f32 {
+    return distance * ray.depth.x + ray.depth.y;
 }
 
 // Whether the way from a to b turns from x towards y about the ray: exactly one of (a, b) and (b, a) does. Where the ray
@@ -87,8 +130,8 @@ fn opposite_longest(a: Corner, b: Corner, c: Corner) -> u32 {
 
 // A place on the ray.
 struct Place {
-    // Depth from the pivot, in device units.
-    depth: f32,
+    // Distance along the ray, in device units, from where the pivot is passed.
+    distance: f32,
     value: Quantity,
 }
 
@@ -108,7 +151,7 @@ fn place_of(a: Corner, b: Corner, c: Corner) -> Place {
         third = b;
     }
     let along = crossing(first, second, third);
-    let depth = first.depth + along.x * (second.depth - first.depth) + along.y * (third.depth - first.depth);
+    let distance = first.distance + along.x * (second.distance - first.distance) + along.y * (third.distance - first.distance);
     let value = (1.0 - along.x - along.y) * first.value + along.x * second.value + along.y * third.value;
-    return Place(depth, value);
+    return Place(distance, value);
 }

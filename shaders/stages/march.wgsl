@@ -7,7 +7,7 @@ import package::lib::view::{view, frame_of};
 import package::lib::mesh_buffers::{points, cells};
 import package::lib::span::{Segment};
 import package::lib::no_data::{NO_DATA};
-import package::lib::walk::{Ray, Corner, ray_through, offset_from, turns, area, place_of};
+import package::lib::walk::{Ray, Corner, ray_through, offset_from, depth_at, turns, area, place_of};
 import package::axes::quantity::{quantity_at, in_cell};
 import package::axes::shading::{pieces_between, shade};
 import package::axes::surface::{cut, is_hidden};
@@ -33,7 +33,7 @@ const NONE = 0xffffffffu;
 
 fn corner_of(ray: Ray, cell: u32, name: u32) -> Corner {
     let frame = frame_of(points[name].xyz);
-    return Corner(name, offset_from(ray, frame), frame.z, quantity_at(cell, name));
+    return Corner(name, offset_from(ray, frame), dot(ray.along, frame), quantity_at(cell, name));
 }
 
 // The triangle through which the ray leaves the cell between the triangle abc, through which it came in, and an apex: the
@@ -72,8 +72,7 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let at = vec2<f32>(id.xy) + 0.5 - view.size * 0.5;
     let ray = ray_through(at);
-    let stretch = length(vec3<f32>(ray.slope, 1.0));
-    let near = view.near - view.forward.w;
+    let near = ((view.near - view.forward.w) - ray.depth.y) / ray.depth.x;
     // Scalars are normalised to [0, 1], and those of cells without data lie beyond.
     let range = pieces_between(0.0, NO_DATA, 0u);
     let pixel = id.y * size.x + id.x;
@@ -92,7 +91,7 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
             c = other;
         }
         var front = place_of(a, b, c);
-        if is_hidden(front.depth, at) {
+        if is_hidden(depth_at(ray, front.distance), at) {
             break;
         }
         for (var n = 0u; n < march.steps; n++) {
@@ -113,20 +112,21 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
             let next = neighbors[cell][index_of(names, dropped)];
             let back = place_of(a, b, c);
             // Rounding alone makes the ray turn back: then it stays where it is.
-            if back.depth > front.depth {
-                let begin = clamp((near - front.depth) / (back.depth - front.depth), 0.0, 1.0);
+            if back.distance > front.distance {
+                let begin = clamp((near - front.distance) / (back.distance - front.distance), 0.0, 1.0);
+                let start = max(front.distance, near);
                 var segment: Segment;
-                segment.length = (back.depth - max(front.depth, near)) * stretch;
+                segment.length = back.distance - start;
                 segment.at = at;
                 segment.front = in_cell(front.value + begin * (back.value - front.value), cell);
                 segment.back = in_cell(back.value, cell);
-                segment = cut(segment, vec2<f32>(max(front.depth, near), back.depth), at);
+                segment = cut(segment, vec2<f32>(depth_at(ray, start), depth_at(ray, back.distance)), at);
                 if segment.length > 0.0 {
                     color += (1.0 - color.a) * shade(range, segment);
                 }
                 front = back;
             }
-            if next == NONE || color.a >= march.opaque || is_hidden(front.depth, at) {
+            if next == NONE || color.a >= march.opaque || is_hidden(depth_at(ray, front.distance), at) {
                 break;
             }
             cell = next;

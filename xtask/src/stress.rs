@@ -10,7 +10,7 @@ mod optics;
 mod section;
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use tetlux_image::write_atomically;
@@ -40,7 +40,7 @@ pub(crate) struct Args {
     /// Small meshes, few cases, few frames: seconds, not minutes
     #[arg(long)]
     short: bool,
-    /// Folder for the page (Markdown) and the figures (JSON)
+    /// Folder for the page (Markdown), the figures (JSON), and a picture of each case
     #[arg(long, short, value_name = "FOLDER", default_value = "target/stress")]
     output: PathBuf,
     /// Everything, written to docs/stress.md
@@ -54,6 +54,8 @@ pub(crate) struct Stress<'a> {
     /// Names of cases; empty: all.
     cases: &'a [String],
     short: bool,
+    /// For pictures.
+    folder: &'a Path,
 }
 
 /// A part of the suite.
@@ -68,7 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<bool> {
         bail!("--only {unknown}: there is no such part; there are {}", PARTS.map(|(name, _)| name).join(", "));
     }
     let renderer = Renderer::new();
-    let stress = Stress { renderer: &renderer, cases: &args.case, short: args.short };
+    let stress = Stress { renderer: &renderer, cases: &args.case, short: args.short, folder: &args.output };
     let mut sections = Vec::new();
     for (name, part) in PARTS {
         if args.only.is_empty() || args.only.iter().any(|asked| asked == name) {

@@ -81,16 +81,32 @@ impl Lens {
         }
     }
 
+    fn side_of_eye(&self, face: [&Vertex; 3], normal: Vec3, turned: Vec3) -> [f32; 2] {
+        let from = face.map(|vertex| normal * self.from_pivot(vertex.position));
+        let sums = from.map(|terms| terms.abs().element_sum());
+        let mut least = from[0];
+        if sums[1] < sums[0] {
+            least = from[1];
+        }
+        if sums[2] < sums[0].min(sums[1]) {
+            least = from[2];
+        }
+        let aside = turned * self.pivot();
+        let sum = sums[0].min(sums[1].min(sums[2]));
+        [least.element_sum() + aside.element_sum(), sum + aside.abs().element_sum()]
+    }
+
     fn face_plane(&self, [a, b, c]: [&Vertex; 3], inward: f32, depth: f32, origin: &Vertex) -> Vec4 {
         let normal = face_normal(a.position, b.position, c.position);
         let n = self.rotated(normal);
-        let (side, scale, rise) = if self.orthographic {
-            (n.z, n.x.abs() + n.y.abs(), self.view.pixel)
+        let ([side, terms], scale, rise) = if self.orthographic {
+            let scale = n.x.abs() + n.y.abs();
+            ([n.z, scale], scale, self.view.pixel)
         } else {
             let reach = a.eye.abs().max(b.eye.abs()).max(c.eye.abs()).max_element();
-            (n.dot(a.eye), n.abs().element_sum() * reach, depth * self.view.pixel)
+            (self.side_of_eye([a, b, c], normal, n), n.abs().element_sum() * reach, depth * self.view.pixel)
         };
-        let edge_on = side.abs() <= EDGE_ON * scale;
+        let edge_on = side.abs() <= EDGE_ON * terms;
         let divisor = (if edge_on { 1e-12 * scale } else { side.abs() }).max(1e-30);
         let toward = if side >= 0.0 { 1.0 } else { -1.0 };
         let limit = |x: f32| x.clamp(-STEEPEST, STEEPEST);

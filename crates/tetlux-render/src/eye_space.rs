@@ -25,9 +25,10 @@ pub(crate) struct EyeSpace {
     pub(crate) middle: [f64; 2],
 }
 
-/// Depth in device units before which a perspective view shows nothing even if the scene asks for none: a millionth
-/// of the mesh, so that depths have an inverse.
-pub(crate) const LEAST_NEAR: f64 = 1e-6;
+/// Depth in device units, of which the mesh is about one wide, before which a perspective view shows nothing even if the
+/// scene asks for none, so that depths have an inverse. A ray far aside in a wide view, or one among the smallest cells of
+/// a graded mesh, has gone a long way at a small depth: this is as small as leaves products of two inverses finite.
+pub(crate) const LEAST_NEAR: f64 = 1e-12;
 
 impl EyeSpace {
     pub(crate) fn new(view: &View, mesh: &TetMesh, device: &DeviceMesh) -> EyeSpace {

@@ -19,13 +19,22 @@ impl Lens {
         Vec3::from([self.view.right, self.view.down, self.view.forward].map(|row| DeviceView::axis(row).dot(direction)))
     }
 
+    pub(crate) fn from_pivot(&self, position: Vec3) -> Vec3 {
+        (position - DeviceView::axis(self.view.pivot_high)) - DeviceView::axis(self.view.pivot_low)
+    }
+
     pub(crate) fn frame_of(&self, position: Vec3) -> Vec3 {
-        self.rotated((position - DeviceView::axis(self.view.pivot_high)) - DeviceView::axis(self.view.pivot_low))
+        self.rotated(self.from_pivot(position))
+    }
+
+    /// The pivot's position in eye space.
+    pub(crate) fn pivot(&self) -> Vec3 {
+        Vec3::from([self.view.right, self.view.down, self.view.forward].map(|row| row[3]))
     }
 
     /// A position in eye space from one relative to the pivot.
     pub(crate) fn eye_of(&self, frame: Vec3) -> Vec3 {
-        frame + Vec3::from([self.view.right, self.view.down, self.view.forward].map(|row| row[3]))
+        frame + self.pivot()
     }
 
     pub(crate) fn pixel_of(&self, eye: Vec3) -> Vec2 {

@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use tetlux_mesh::{NONE, TetMesh};
 
 use crate::device_mesh::{DeviceMesh, NEGATIVE};
-use crate::device_view::DeviceView;
 use crate::lens::{Lens, NUDGE};
 
 /// Rows of pixels whose entries one core finds at a time.
@@ -47,7 +46,7 @@ struct Face {
 #[derive(Clone, Copy)]
 struct Entry {
     pixel: u32,
-    depth: f32,
+    distance: f32,
     entry: u32,
 }
 
@@ -103,18 +102,18 @@ impl Face {
         seen.then_some(Face { entry, names: others, frames, columns, rows })
     }
 
-    /// How deep a ray that comes in through this face crosses it.
-    fn depth_at(&self, ray: &Ray) -> Option<f32> {
+    /// How far along a ray that comes in through this face crosses it.
+    fn distance_at(&self, ray: &Ray) -> Option<f32> {
         let corners: [Corner; 3] = std::array::from_fn(|i| Corner {
             name: self.names[i],
             offset: ray.offset_from(self.frames[i]),
-            depth: self.frames[i].z,
+            distance: ray.along.dot(self.frames[i]),
         });
         let [a, b, c] = &corners;
         if !(turns(a, b) && turns(b, c) && turns(c, a)) {
             return None;
         }
-        Some(depth_of(a, b, c))
+        Some(distance_of(a, b, c))
     }
 }
 
@@ -155,14 +154,14 @@ fn entries(lens: &Lens, faces: &[Face], size: [u32; 2]) -> (Vec<u32>, Vec<u32>) 
                 for y in face.rows[0].max(first)..face.rows[1].min(end) {
                     for x in face.columns[0]..face.columns[1] {
                         let at = Vec2::new(x as f32, y as f32) + 0.5 - Vec2::from(lens.view.size) * 0.5;
-                        if let Some(depth) = face.depth_at(&lens.ray_through(at)) {
-                            found.push(Entry { pixel: y * size[0] + x, depth, entry: face.entry });
+                        if let Some(distance) = face.distance_at(&lens.ray_through(at)) {
+                            found.push(Entry { pixel: y * size[0] + x, distance, entry: face.entry });
                         }
                     }
                 }
             }
             found.sort_unstable_by(|a, b| {
-                a.pixel.cmp(&b.pixel).then(a.depth.total_cmp(&b.depth)).then(a.entry.cmp(&b.entry))
+                a.pixel.cmp(&b.pixel).then(a.distance.total_cmp(&b.distance)).then(a.entry.cmp(&b.entry))
             });
             found
         })
@@ -177,33 +176,45 @@ fn entries(lens: &Lens, faces: &[Face], size: [u32; 2]) -> (Vec<u32>, Vec<u32>) 
 
 #[derive(Debug, Clone, Copy)]
 struct Ray {
-    slope: Vec2,
+    right: Vec3,
+    down: Vec3,
     pivot: Vec2,
+    along: Vec3,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     name: u32,
     offset: Vec2,
-    depth: f32,
+    distance: f32,
 }
 
 impl Lens {
     fn ray_through(&self, at: Vec2) -> Ray {
         let aside = at * self.view.pixel;
-        let DeviceView { right, down, forward, .. } = self.view;
-        let pivot = Vec2::new(right[3], down[3]);
+        let eye = self.pivot();
         if self.orthographic {
-            Ray { slope: Vec2::ZERO, pivot: pivot - aside }
-        } else {
-            Ray { slope: aside, pivot: pivot - aside * forward[3] }
+            return Ray { right: Vec3::X, down: Vec3::Y, pivot: eye.truncate() - aside, along: Vec3::Z };
         }
+        let direction = aside.extend(1.0);
+        let [mut x, mut y, mut z] = [Vec3::X, Vec3::Y, Vec3::Z];
+        if aside.abs().max_element() > 1.0 {
+            (x, y, z) = if aside.x.abs() >= aside.y.abs() { (y, z, x) } else { (z, x, y) };
+            if z.dot(direction) < 0.0 {
+                (x, y, z) = (y, x, -z);
+            }
+        }
+        let per_main = 1.0 / z.dot(direction);
+        let right = x - z * (x.dot(direction) * per_main);
+        let down = y - z * (y.dot(direction) * per_main);
+        let pivot = Vec2::new(right.dot(eye), down.dot(eye));
+        Ray { right, down, pivot, along: z * (direction.length() * per_main) }
     }
 }
 
 impl Ray {
     fn offset_from(&self, frame: Vec3) -> Vec2 {
-        frame.truncate() - frame.z * self.slope + self.pivot
+        Vec2::new(self.right.dot(frame), self.down.dot(frame)) + self.pivot
     }
 }
 
@@ -241,11 +252,11 @@ fn opposite_longest(a: &Corner, b: &Corner, c: &Corner) -> usize {
     }
 }
 
-/// The depth of the shader's `place_of`.
-fn depth_of(a: &Corner, b: &Corner, c: &Corner) -> f32 {
+/// The distance of the shader's `place_of`.
+fn distance_of(a: &Corner, b: &Corner, c: &Corner) -> f32 {
     let [first, second, third] = [[a, b, c], [b, c, a], [c, a, b]][opposite_longest(a, b, c)];
     let along = crossing(first, second, third);
-    first.depth + along.x * (second.depth - first.depth) + along.y * (third.depth - first.depth)
+    first.distance + along.x * (second.distance - first.distance) + along.y * (third.distance - first.distance)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 #![allow(clippy::print_stdout, reason = "the figures that were measured")]
 
 mod classes;
+mod close_to_the_eye;
 mod cycles;
 mod extremes;
 mod eye_inside;

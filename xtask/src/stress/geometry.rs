@@ -29,6 +29,7 @@ pub(crate) const CASES: &[Case] = cases! {
     "flat-cells-aslant", "layers 1e-5 to 0.5 thick, turned so that no coordinate is alike", cells::flat_aslant;
     "zero-volume", "cells of no volume in faces and on edges, vertices on a line", cells::zero_volume;
     "thin-sheet", "20 layers in a hundredth of the width, opaque, the field changing from one to the next", cells::thin_sheet;
+    "film", "four layers in a ten-thousandth of half the width, opaque, the field changing from one to the next", cells::film;
     "long-cells", "edges of one cell from 1e-6 to 1", cells::long;
     "graded-cells", "edges from 1e-6 to 1 in one mesh", cells::graded;
     "one-far-cell", "a cell 3000 times longer than the others, far away", cells::one_far;
@@ -47,6 +48,7 @@ pub(crate) const CASES: &[Case] = cases! {
     "eye-on-face", "the eye in a face inside, two more planes of faces through it", |short| eye::at(short, DVec3::new(1.25, 1.625, 2.0));
     "eye-in-cell", "the eye in a cell", |short| eye::at(short, DVec3::new(1.3, 1.55, 1.21));
     "eye-beside-vertex", "the eye 1e-6 from a vertex inside", |short| eye::at(short, DVec3::new(1.000_001, 1.999_999, 1.000_000_5));
+    "eye-in-smallest-cell", "the eye in a cell of 1e-4 among others up to 1, as opaque as they are small", eye::in_smallest;
     "eye-on-surface", "the eye on the mesh's surface, looking in", |short| eye::at(short, DVec3::new(0.0, 1.5, 1.5));
     "eye-on-corner", "the eye on the mesh's corner, looking along its edge", eye::on_corner;
     "eye-in-plane", "the eye outside, in the planes of inner faces", eye::in_plane;
@@ -55,6 +57,7 @@ pub(crate) const CASES: &[Case] = cases! {
     "near-plane-on-vertices", "a near plane through vertices", |short| eye::near(short, 1.0);
     "view-of-170", "a view 170 degrees high, from inside", |short| eye::wide(short, 170.0);
     "view-of-179-9", "a view 179.9 degrees high, from inside", |short| eye::wide(short, 179.9);
+    "view-of-179-99", "a view 179.99 degrees high, from inside", |short| eye::wide(short, 179.99);
     "view-of-180", "a view 180 degrees high, which no camera has", |short| eye::wide(short, 180.0);
     "cell-round-eye", "one cell that fills the picture, the eye in it", crowds::round_eye;
     "cell-fills-picture", "one face through which all of the picture is seen, from a millionth of its width", crowds::fills;

@@ -4,9 +4,10 @@ use tetlux_mesh::{Component, Field};
 use tetlux_scene::View;
 
 use super::*;
+use crate::device_view::DeviceView;
 
 fn corner(name: u32, x: f32, y: f32) -> Corner {
-    Corner { name, offset: Vec2::new(x, y), depth: x + 2.0 * y }
+    Corner { name, offset: Vec2::new(x, y), distance: x + 2.0 * y }
 }
 
 #[test]
@@ -28,8 +29,8 @@ fn crossings_are_where_the_offsets_balance() {
     let [a, b, c] = [corner(0, -1.0, 0.0), corner(1, 1.0, -2.0), corner(2, 1.0, 2.0)];
     assert_eq!(crossing(&a, &b, &c), Vec2::splat(0.25));
     assert_eq!(opposite_longest(&a, &b, &c), 0);
-    // Depths are linear in the offsets: at the origin none, from whichever vertex.
-    assert_eq!([depth_of(&a, &b, &c), depth_of(&b, &c, &a), depth_of(&c, &a, &b)], [0.0; 3]);
+    // Distances are linear in the offsets: at the origin none, from whichever vertex.
+    assert_eq!([distance_of(&a, &b, &c), distance_of(&b, &c, &a), distance_of(&c, &a, &b)], [0.0; 3]);
     // Seen edge-on there is no balance to find.
     let flat = corner(3, 3.0, 0.0);
     assert_eq!(crossing(&a, &flat, &a), Vec2::splat(1.0 / 3.0));

@@ -26,8 +26,8 @@ pub(crate) struct Point {
 /// Pixels by which a cell's box is widened, for rounding.
 const MARGIN: f64 = 0.03125;
 
-/// Planes within this angle (in radians, roughly) of edge-on count as edge-on.
-const EDGE_ON: f64 = 1e-6;
+/// Planes within this angle (in radians, roughly) of edge-on count as edge-on: what double precision leaves uncertain.
+const EDGE_ON: f64 = 1e-12;
 
 /// A ray in a plane that is seen edge-on is taken for one this share of the picture's larger side, and no less than
 /// this share of `NUDGE_SIDE` pixels, away: further than single precision misses the plane by. Then all faces that

@@ -66,21 +66,24 @@ pub(super) fn zero_volume(short: bool) -> Result<Input> {
     input(parts, radius, perspective(ASIDE, DVec3::ZERO, 30.0), short)
 }
 
-/// Thickness of the sheet; a power of two, so that its layers are equal.
-const SHEET: f64 = 1.0 / 128.0;
+/// Layers in a sheet of some thickness, which is as opaque as others are thick: a field that goes from end to end of its
+/// range through it.
+fn sheet(short: bool, layers: usize, thickness: f64) -> Result<Input> {
+    let n = count(short, 6, 3);
+    let corner = DVec3::new(1.0, 1.0, 0.5 * thickness);
+    let parts = cuboid([n, n, layers], Split::Six, [-corner, corner]);
+    let camera = perspective(DVec3::new(1.0, -2.5, 5.0), DVec3::ZERO, 30.0);
+    let mut specimen = specimen(parts, |p| 0.5 + 0.9 * p.z / thickness, camera, short)?;
+    specimen.unit_distance = thickness;
+    specimen.input("stress", "")
+}
 
 pub(super) fn thin_sheet(short: bool) -> Result<Input> {
-    let layers = 20;
-    let parts = cuboid(
-        [count(short, 6, 3), count(short, 6, 3), layers],
-        Split::Six,
-        [DVec3::new(-1.0, -1.0, -0.5 * SHEET), DVec3::new(1.0, 1.0, 0.5 * SHEET)],
-    );
-    let camera = perspective(DVec3::new(1.0, -2.5, 5.0), DVec3::ZERO, 30.0);
-    let field = |p: DVec3| 0.5 + 0.9 * p.z / SHEET;
-    let mut specimen = specimen(parts, field, camera, short)?;
-    specimen.unit_distance = SHEET;
-    specimen.input("stress", "")
+    sheet(short, 20, 1.0 / 128.0)
+}
+
+pub(super) fn film(short: bool) -> Result<Input> {
+    sheet(short, 4, 1e-4)
 }
 
 pub(super) fn long(short: bool) -> Result<Input> {

@@ -12,16 +12,19 @@ use crate::truth;
 pub(super) const CLEAN: f64 = 1e-4;
 /// Below this alpha a medium is thin: an absolute error says little of it.
 const THIN: f32 = 1e-2;
-/// What may move a ray, in pixels: single precision knows a place in a picture this well. Where moving it so far changes
-/// the truth by more than is promised, the pixel's centre is on an edge, and which side is seen says nothing of a method.
-const BESIDE: f64 = 1e-4;
+/// What may move a ray, as a share of the picture's larger side: single precision knows a place in a picture this well.
+/// Where moving it so far changes the truth by more than is promised, the pixel's centre is on an edge, and which side is
+/// seen says nothing of a method.
+pub(super) const BESIDE: f64 = 1e-6;
+/// What rounding leaves of nothing in the truth.
+const NOTHING: f32 = 1e-14;
 
 /// The right picture, and how far it may be trusted at every pixel.
 pub(super) struct Truth {
-    image: Image,
+    pub(super) image: Image,
     /// By how much a pixel's worst channel changes with the ray's place.
     moved: Vec<f64>,
-    /// Whether it depends on the ray's place if anything is seen.
+    /// Whether anything is seen depends on the ray's place.
     at_rim: Vec<bool>,
 }
 
@@ -30,6 +33,8 @@ pub(super) struct Truth {
 pub(super) struct Verdict {
     /// Largest absolute error of a pixel's worst channel, edges apart.
     pub(super) max: f64,
+    /// The pixel that has it, what is drawn there, and what is right.
+    pub(super) worst: ([usize; 2], [f32; 4], [f32; 4]),
     /// Largest error relative to alpha where the medium is thin, edges apart; none where it is nowhere.
     pub(super) thin: Option<f64>,
     /// Pixels with a value that is infinite or none.
@@ -61,18 +66,19 @@ impl Truth {
         let image = truth::image(input, view, [0.0; 2])?;
         let mut moved = vec![0.0_f64; image.pixels().len()];
         let mut at_rim = vec![false; moved.len()];
-        for by in [[-BESIDE, 0.0], [BESIDE, 0.0], [0.0, -BESIDE], [0.0, BESIDE]] {
+        let by = BESIDE * f64::from(view.size[0].max(view.size[1]));
+        for by in [[-by, 0.0], [by, 0.0], [0.0, -by], [0.0, by]] {
             let beside = truth::image(input, view, by)?;
             for (i, (a, b)) in image.pixels().iter().zip(beside.pixels()).enumerate() {
                 moved[i] = moved[i].max(difference(a, b));
-                at_rim[i] |= is_lit(a) != is_lit(b);
+                at_rim[i] |= lit(a) != lit(b);
             }
         }
         Ok(Truth { image, moved, at_rim })
     }
 
     pub(super) fn count(&self) -> Count {
-        let lit = self.image.pixels().iter().zip(&self.moved).filter(|(pixel, _)| is_lit(pixel));
+        let lit = self.image.pixels().iter().zip(&self.moved).filter(|(pixel, _)| lit(pixel) == Some(true));
         let judged = lit.clone().filter(|(_, moved)| **moved <= CLEAN);
         let thin = judged.clone().filter(|(pixel, moved)| is_thin(pixel, **moved));
         Count { lit: lit.count(), judged: judged.count(), thin: thin.count() }
@@ -90,12 +96,17 @@ impl Truth {
                 verdict.not_finite += 1;
                 continue;
             }
-            verdict.coverage += usize::from(is_lit(found) != is_lit(right) && !self.at_rim[i]);
+            let is_lit = found.iter().any(|&c| c != 0.0);
+            verdict.coverage += usize::from(lit(right).is_some_and(|lit| lit != is_lit) && !self.at_rim[i]);
             if self.moved[i] > CLEAN {
                 continue;
             }
             let error = difference(found, right);
-            verdict.max = verdict.max.max(error);
+            if error > verdict.max {
+                verdict.max = error;
+                let width = self.image.width() as usize;
+                verdict.worst = ([i % width, i / width], *found, *right);
+            }
             if is_thin(right, self.moved[i]) {
                 let relative = error / f64::from(right[3]);
                 verdict.thin = Some(verdict.thin.map_or(relative, |thin| thin.max(relative)));
@@ -105,8 +116,10 @@ impl Truth {
     }
 }
 
-fn is_lit(pixel: &[f32; 4]) -> bool {
-    pixel.iter().any(|&c| c != 0.0)
+/// Whether a pixel of the truth is lit; none where rounding alone may have lit it.
+fn lit(right: &[f32; 4]) -> Option<bool> {
+    let most = right.iter().copied().fold(0.0, f32::max);
+    if most > 0.0 && most <= NOTHING { None } else { Some(most > 0.0) }
 }
 
 /// Whether a pixel is one to be judged relatively: of little opacity, and not on an edge even so.
@@ -169,6 +182,8 @@ mod tests {
             let verdict = judged(|p| p[pixel] = [value; 4]);
             assert!(verdict.coverage == 1 && !verdict.is_clean(), "{verdict:?}");
         }
+        // What rounding of the truth has lit may be so or not.
+        assert_eq!([lit(&[0.0; 4]), lit(&[0.0, 0.0, 0.0, 1e-15]), lit(&[1e-12; 4])], [Some(false), None, Some(true)]);
         // Of another size.
         let verdict = truth().judge(&Image::from_pixels(2, 2, vec![[0.0; 4]; 4]).unwrap());
         assert!(!verdict.is_clean(), "{verdict:?}");

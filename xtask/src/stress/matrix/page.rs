@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::judge::{CLEAN, Verdict};
-use super::{Line, OURS, Outcome};
+use super::judge::{BESIDE, CLEAN, Verdict};
+use super::{LIMITS, Line, OURS, Outcome};
 use crate::bench::table::{markdown as table, number};
 use crate::methods::Row;
 
@@ -40,7 +40,7 @@ fn groups(methods: &[&Row]) -> [Group; 3] {
 pub(super) fn markdown(lines: &[Line], methods: &[&Row]) -> String {
     let mut page = format!(
         "Every picture against an f64 ray caster that shares no formula with what it judges. Pixels whose truth changes by more \
-         than {CLEAN:.0e} where the ray is moved by 1e-4 of a pixel are edges and not judged. Promised of ours: no error above \
+         than {CLEAN:.0e} where the ray is moved by {BESIDE:.0e} of the picture's side are edges and not judged. Promised of ours: no error above \
          {CLEAN:.0e}, neither absolute nor, where alpha is below 0.01, relative to alpha; no coverage fault (a pixel lit where \
          nothing is, or dark where something is). Promised of every method: no value that is infinite or not a number. What \
          follows an error in a cell: `c3` three coverage faults, `n3` three pixels not finite, **bold** a promise broken; `r` \
@@ -54,7 +54,13 @@ pub(super) fn markdown(lines: &[Line], methods: &[&Row]) -> String {
         let has_thin = |line: &Line| line.pixels.is_some_and(|pixels| pixels.thin > 0);
         page += &errors(lines, methods, &columns, has_thin, |verdict| verdict.thin);
     }
-    page + &refusals(lines, methods)
+    page + &limits(lines) + &refusals(lines, methods)
+}
+
+fn limits(lines: &[Line]) -> String {
+    let known = LIMITS.iter().filter(|(case, _)| lines.iter().any(|line| line.case == *case));
+    let text: String = known.map(|(case, why)| format!("- **Failed**: {case}: {why}.\n")).collect();
+    if text.is_empty() { text } else { format!("\n### Known limits\n\n{text}") }
 }
 
 fn cases(lines: &[Line]) -> String {
