@@ -127,6 +127,10 @@ impl<'a, S: Simd> Walk<'a, S> {
     pub(crate) fn finish(&self, rows: &mut [&mut [[f32; 4]]]) {
         for (y, row) in rows.iter_mut().enumerate() {
             for (x, pixel) in row.iter_mut().enumerate() {
+                #[cfg(feature = "planted")]
+                if crate::planted::is_lost(x, y) {
+                    continue;
+                }
                 let at = place(x, y, S::f32s::LEN);
                 *pixel = [self.tile[0][at], self.tile[1][at], self.tile[2][at], self.tile[3][at]];
             }
