@@ -172,9 +172,11 @@ pub fn renderer() -> &'static Renderer {
     RENDERER.get_or_init(Renderer::new)
 }
 
-/// The plan of a scene for a way of rendering; the scene's own method says what is done though it need not be.
+/// The plan of a scene for a way of rendering; the scene's own method says to what error, and what is done
+/// though it need not be.
 pub fn plan(mesh: &TetMesh, scene: &Scene, way: Way) -> Plan {
-    let method = Method { no_skip: scene.method.no_skip, ..way.method() };
+    let Method { no_skip, max_error, .. } = scene.method;
+    let method = Method { no_skip, max_error, ..way.method() };
     Plan::new(&Scene { method, ..scene.clone() }, mesh, renderer().device())
         .unwrap_or_else(|e| panic!("{way:?} cannot be planned: {e}"))
 }

@@ -3,23 +3,22 @@
 use glam::DVec3;
 use tetlux_mesh::Field;
 use tetlux_mesh::procedural::{Split, cuboid};
-use tetlux_optics::TransferFunction;
+use tetlux_optics::{Classification, TransferFunction};
 use tetlux_scene::{Skip, SkipSet};
 
 use super::Twins;
 use crate::{FIELD, Random, Recipe, range_of, transfer};
 
 /// A mesh full of holes, and one whose holes are filled. Every cell has a value of its own.
-pub fn filled(seed: u64) -> Twins {
+pub fn filled(mut second: Recipe, seed: u64) -> Twins {
     let mut random = Random::new(seed ^ 0xf11);
-    let mut second = Recipe::random(seed, 32);
     let mut values: Vec<f64> = second.parts.cells.iter().map(|_| random.between(0.0, 1.0)).collect();
     // The range is the same with the holes and without.
     (values[0], values[1]) = (0.0, 1.0);
     let colors = [0.0, 0.3, 0.7, 1.0].map(|s| [s, random.between(0.0, 1.0), random.between(0.0, 1.0), s]);
     let mut height = || random.between(0.0, 3.0);
     let opacity = [[0.0, height()], [0.2, height()], [0.3, 0.0], [0.7, 0.0], [0.8, height()], [1.0, height()]];
-    second.transfer = transfer(&colors, &opacity);
+    second.classification = Classification::OneField(transfer(&colors, &opacity));
     second.field = Field::cell(FIELD, 1, values.clone());
     let mut first = second.clone();
     let is_clear = |value: f64| (0.3..=0.7).contains(&value);
@@ -30,12 +29,11 @@ pub fn filled(seed: u64) -> Twins {
 }
 
 /// Bodies about the mesh, before it and behind it, all of one value whose opacity is zero.
-pub fn about(seed: u64) -> Twins {
+pub fn about(mut first: Recipe, seed: u64) -> Twins {
     let mut random = Random::new(seed ^ 0xab0);
-    let mut first = Recipe::random(seed, 32);
     let [low, high] = range_of(&first.field);
     let clear = [0.45, 0.55].map(|share| low + (high - low) * share);
-    first.transfer = cleared(&first.transfer, clear);
+    first.classification = Classification::OneField(cleared(first.transfer(), clear));
     let mut second = first.clone();
     for _ in 0..3 {
         let direction = DVec3::from([0; 3].map(|_| random.between(-1.0, 1.0))).normalize_or(DVec3::X);

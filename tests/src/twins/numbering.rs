@@ -4,8 +4,7 @@ use super::Twins;
 use crate::{Random, Recipe};
 
 /// Cells in another order, and the vertices of each.
-pub fn cells(seed: u64) -> Twins {
-    let first = Recipe::random(seed, 32);
+pub fn cells(first: Recipe, seed: u64) -> Twins {
     let mut second = first.clone();
     let mut random = Random::new(seed ^ 0x9e1);
     shuffle(&mut second.parts.cells, &mut random);
@@ -14,8 +13,7 @@ pub fn cells(seed: u64) -> Twins {
 }
 
 /// Points in another order.
-pub fn points(seed: u64) -> Twins {
-    let first = Recipe::random(seed, 32);
+pub fn points(first: Recipe, seed: u64) -> Twins {
     let mut second = first.clone();
     let mut of: Vec<u32> = (0..first.parts.points.len() as u32).collect();
     shuffle(&mut of, &mut Random::new(seed ^ 0x9017));
@@ -23,7 +21,8 @@ pub fn points(seed: u64) -> Twins {
     for (new, &old) in of.iter().enumerate() {
         place[old as usize] = new as u32;
         second.parts.points[new] = first.parts.points[old as usize];
-        second.field.values[new] = first.field.values[old as usize];
+        let of = |point: usize| point * first.field.components..(point + 1) * first.field.components;
+        second.field.values[of(new)].copy_from_slice(&first.field.values[of(old as usize)]);
     }
     second.parts.cells.iter_mut().for_each(|cell| *cell = cell.map(|v| place[v as usize]));
     Twins::new(&first, &second)

@@ -9,35 +9,30 @@ use super::Twins;
 use crate::{FIELD, Random, Recipe};
 
 /// Every cell in four at its middle (Alfeld 1984).
-pub fn into_four(seed: u64) -> Twins {
-    let first = Recipe::random(seed, 32);
+pub fn into_four(first: Recipe, _: u64) -> Twins {
     let all = 0..first.parts.cells.len();
     Twins::new(&first, &Finer::new(&first).at_middles(all))
 }
 
 /// Every cell in eight: a new point on every edge, and a diagonal through what the four corners leave (Bey 1995).
-pub fn into_eight(seed: u64) -> Twins {
-    let first = Recipe::random(seed, 32);
+pub fn into_eight(first: Recipe, _: u64) -> Twins {
     Twins::new(&first, &Finer::new(&first).at_all_edges())
 }
 
 /// One cell in four at its middle.
-pub fn one_cell(seed: u64) -> Twins {
-    let first = Recipe::random(seed, 32);
+pub fn one_cell(first: Recipe, seed: u64) -> Twins {
     let cell = Random::new(seed).below(first.parts.cells.len());
     Twins::new(&first, &Finer::new(&first).at_middles(cell..cell + 1))
 }
 
 /// Every cell about one edge in two at the edge's middle.
-pub fn one_edge(seed: u64) -> Twins {
-    let first = Recipe::random(seed, 32);
+pub fn one_edge(first: Recipe, seed: u64) -> Twins {
     let [a, b, _, _] = first.parts.cells[Random::new(seed).below(first.parts.cells.len())];
     Twins::new(&first, &Finer::new(&first).at_edge([a, b]))
 }
 
 /// A box with a linear field, in two grids that share no point but the corners.
-pub fn another_mesh(seed: u64) -> Twins {
-    let first = Recipe::random(seed, 32);
+pub fn another_mesh(first: Recipe, _: u64) -> Twins {
     let (low, high) = (first.parts.points[0].signum() * 1.5, -first.parts.points[0].signum() * 1.5);
     let boxed = |counts, split| {
         let parts = cuboid(counts, split, [low, high]);
@@ -69,7 +64,10 @@ impl Finer {
         let Recipe { parts: Parts { points, .. }, field, .. } = &mut self.recipe;
         let share = 1.0 / N as f64;
         points.push(names.iter().map(|&v| points[v as usize] * share).sum());
-        field.values.push(names.iter().map(|&v| field.values[v as usize] * share).sum());
+        for k in 0..field.components {
+            let value = |&v: &u32| field.values[v as usize * field.components + k] * share;
+            field.values.push(names.iter().map(value).sum());
+        }
         points.len() as u32 - 1
     }
 
@@ -87,13 +85,12 @@ impl Finer {
         for cell in which {
             let names = self.recipe.parts.cells[cell];
             let middle = self.between(names);
-            let part = |k: usize| {
-                let mut part = names;
-                part[k] = middle;
-                part
-            };
-            self.recipe.parts.cells[cell] = part(0);
-            self.recipe.parts.cells.extend([1, 2, 3].map(part));
+            // Each part has the new point in place of one vertex.
+            let mut parts = [names; 4];
+            (0..4).for_each(|k| parts[k][k] = middle);
+            let cells = &mut self.recipe.parts.cells;
+            cells[cell] = parts[0];
+            cells.extend(&parts[1..]);
         }
         self.recipe
     }

@@ -7,14 +7,14 @@ use super::Twins;
 use crate::{Random, Recipe, orthographic, perspective};
 
 /// Parallel rays through the whole mesh: the picture is mirrored.
-pub fn parallel(seed: u64) -> Twins {
-    let first = Recipe { camera: beside(seed, |from, to| orthographic(from, to, 1.5)), ..Recipe::random(seed, 32) };
+pub fn parallel(first: Recipe, seed: u64) -> Twins {
+    let first = Recipe { camera: beside(seed, |from, to| orthographic(from, to, 1.5)), ..first };
     Twins { mirrored: true, ..reversed(&first) }
 }
 
 /// One ray of perspective, between an eye on this side and one on that.
-pub fn ray(seed: u64) -> Twins {
-    let first = Recipe { camera: beside(seed, |from, to| perspective(from, to, 1.0)), ..Recipe::random(seed, 1) };
+pub fn ray(first: Recipe, seed: u64) -> Twins {
+    let first = Recipe { camera: beside(seed, |from, to| perspective(from, to, 1.0)), side: 1, ..first };
     reversed(&first)
 }
 

@@ -1,6 +1,7 @@
 //! Random meshes, transfer functions and cameras against the f64 reference.
 
 use tetlux_mesh::TetMesh;
+use tetlux_optics::Classification;
 use tetlux_scene::Scene;
 use tetlux_tests::{Recipe, Way, pixel_error, reference, render, sensitivity, transfer};
 
@@ -15,8 +16,8 @@ const SIDE: usize = 96;
 fn random_scene(seed: u64, one_color: bool) -> (TetMesh, Scene) {
     let mut recipe = Recipe::random(seed, SIDE as u32);
     if one_color {
-        let opacity: Vec<[f64; 2]> = recipe.transfer.opacity_nodes().iter().map(|n| [n.s, n.opacity]).collect();
-        recipe.transfer = transfer(&[[0.0, 0.25, 1.0, 0.5]], &opacity);
+        let opacity: Vec<[f64; 2]> = recipe.transfer().opacity_nodes().iter().map(|n| [n.s, n.opacity]).collect();
+        recipe.classification = Classification::OneField(transfer(&[[0.0, 0.25, 1.0, 0.5]], &opacity));
     }
     let (mesh, scene) = recipe.made();
     assert_eq!((mesh.assembly().cells_inverted, mesh.assembly().faces_folded), (0, 0), "the cells do not overlap");

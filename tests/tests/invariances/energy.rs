@@ -8,6 +8,7 @@
 use std::sync::Arc;
 
 use tetlux_image::Image;
+use tetlux_optics::{Classification, Widget};
 use tetlux_render::{Model, table_specs};
 use tetlux_scene::{Backend, Integrator, Method, Order, Plan};
 use tetlux_tables::{Table, TableCache};
@@ -21,8 +22,8 @@ const ROUNDING: f32 = 2e-6;
 
 fn recipe(seed: u64) -> Recipe {
     let recipe = Recipe::random(seed, 32);
-    let opacity: Vec<[f64; 2]> = recipe.transfer.opacity_nodes().iter().map(|n| [n.s, n.opacity]).collect();
-    Recipe { transfer: white(&opacity), ..recipe }
+    let opacity: Vec<[f64; 2]> = recipe.transfer().opacity_nodes().iter().map(|n| [n.s, n.opacity]).collect();
+    Recipe { classification: Classification::OneField(white(&opacity)), ..recipe }
 }
 
 /// The largest difference of a colour from alpha, as a share of it.
@@ -75,6 +76,37 @@ fn every_integrator_that_is_ours() {
             worst = worst.max(share);
         }
         println!("{integrator} on {backend}: off by {worst:.1e} of alpha");
+    }
+}
+
+/// By two fields, where segments are shaded one by one.
+#[test]
+fn two_fields() {
+    let is_white = |classification: Classification| match classification {
+        Classification::TwoFields(transfer) => {
+            let opacity: Vec<[f64; 2]> = transfer.opacity_nodes().iter().map(|n| [n.s, n.opacity]).collect();
+            Some(Classification::TwoFields(white(&opacity)))
+        }
+        Classification::Widgets(mut function) => {
+            for widget in &mut function.widgets {
+                let same = Widget::new(*widget.shape(), widget.support().copied(), widget.max_opacity(), [1.0; 3]);
+                *widget = same.unwrap_or_else(|e| panic!("{e}"));
+            }
+            Some(Classification::Widgets(function))
+        }
+        _ => None,
+    };
+    for way in [Way::CpuExact, Way::CpuPixel, Way::GpuExact, Way::GpuMarch] {
+        let mut worst = 0.0f32;
+        for seed in 0..SEEDS {
+            let recipe = Recipe::of_two_fields(seed, 24);
+            let Some(classification) = is_white(recipe.classification.clone()) else { continue };
+            let (mesh, scene) = Recipe { classification, ..recipe }.made();
+            let share = largest_share(&render(&mesh, &scene, way));
+            assert!(share <= ROUNDING, "{way:?}, seed {seed}: off by {share:.1e} of alpha");
+            worst = worst.max(share);
+        }
+        println!("two fields, {way:?}: off by {worst:.1e} of alpha");
     }
 }
 

@@ -44,7 +44,7 @@ fn the_ends_of_a_segment_through_a_transfer_function() {
     let mut random = Random::new(9);
     for seed in 0..40 {
         let recipe = Recipe::random(seed, 1);
-        let pieces = pieces(&recipe.transfer, range_of(&recipe.field), 1.0);
+        let pieces = pieces(recipe.transfer(), range_of(&recipe.field), 1.0);
         let all = [0, pieces.len() - 1];
         for _ in 0..100 {
             let [s, t] = [0; 2].map(|_| random.between(0.0, 1.0) as f32);
