@@ -13,6 +13,7 @@ mod eye_inside;
 mod grid_rays;
 mod layers;
 mod random_scenes;
+mod thin_sheets;
 mod transfer_functions;
 
 use glam::DVec3;
