@@ -16,6 +16,9 @@
 //! # Ok::<(), tetlux_shaders::ComposeError>(())
 //! ```
 
+#[cfg(feature = "planted")]
+pub mod planted;
+
 macro_rules! modules {
     ($($folder:ident { $($file:ident)+ })+) => {
         &[$($((
@@ -170,6 +173,8 @@ impl Composer<'_> {
             return Ok(());
         }
         self.path.push(name.into());
+        #[cfg(feature = "planted")]
+        let text = &planted::edited(name, text);
         let mut body = String::new();
         for (number, line) in text.lines().enumerate() {
             if !line.starts_with("import ") {

@@ -17,6 +17,8 @@
 
 mod closed_form;
 mod random;
+mod random_scene;
+pub mod twins;
 
 use std::sync::OnceLock;
 
@@ -32,6 +34,7 @@ use tetlux_scene::{Backend, Camera, CellProjection, Method, Order, Plan, Project
 
 pub use closed_form::{Convex, Judged, composite, depth_of, judge};
 pub use random::Random;
+pub use random_scene::{Recipe, range_of, sensitivity};
 
 /// A back end and an order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,6 +72,9 @@ impl Way {
         Way::CpuExact,
         Way::CpuPixel,
     ];
+
+    /// Those that are right whatever the scene.
+    pub const RIGHT: [Way; 5] = [Way::CpuExact, Way::CpuPixel, Way::GpuExact, Way::GpuTiles, Way::GpuMarch];
 
     fn method(self) -> Method {
         let projection = match self {
@@ -167,15 +173,23 @@ pub fn renderer() -> &'static Renderer {
     RENDERER.get_or_init(Renderer::new)
 }
 
-/// The plan of a scene for a way of rendering.
+/// The plan of a scene for a way of rendering; the scene's own method says to what error, and what is done
+/// though it need not be.
 pub fn plan(mesh: &TetMesh, scene: &Scene, way: Way) -> Plan {
-    let scene = Scene { method: way.method(), ..scene.clone() };
-    Plan::new(&scene, mesh, renderer().device()).unwrap_or_else(|e| panic!("{way:?} cannot be planned: {e}"))
+    let Method { no_skip, max_error, .. } = scene.method;
+    let method = Method { no_skip, max_error, ..way.method() };
+    Plan::new(&Scene { method, ..scene.clone() }, mesh, renderer().device())
+        .unwrap_or_else(|e| panic!("{way:?} cannot be planned: {e}"))
 }
 
 /// The picture.
 pub fn render(mesh: &TetMesh, scene: &Scene, way: Way) -> Image {
-    let frame = renderer().render(scene, &Model::new(mesh), &plan(mesh, scene, way));
+    render_by(renderer(), mesh, scene, way)
+}
+
+/// The same by a renderer of the test's own.
+pub fn render_by(renderer: &Renderer, mesh: &TetMesh, scene: &Scene, way: Way) -> Image {
+    let frame = renderer.render(scene, &Model::new(mesh), &plan(mesh, scene, way));
     frame.unwrap_or_else(|e| panic!("{way:?} cannot be rendered: {e}")).image
 }
 

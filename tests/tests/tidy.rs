@@ -77,6 +77,11 @@ fn dependencies_point_one_way() {
 }
 
 #[test]
+fn no_program_is_built_with_planted_faults() {
+    assert_no_faults(planted_faults(&metadata()));
+}
+
+#[test]
 fn the_reference_uses_no_closed_form() {
     let sources = texts().filter(|(path, _)| path.starts_with("crates/tetlux-reference/") && path.ends_with(".rs"));
     assert_no_faults(sources.flat_map(|(path, text)| closed_form_faults(&path, &text)).collect());
@@ -214,6 +219,30 @@ fn direction_faults(metadata: &Value, forbidden: &[(&str, &[&str])]) -> Vec<Stri
 
 /// Modules of optics that hold integrals, by how their names begin; those of shaders' twins end alike.
 const INTEGRALS: [&str; 4] = ["segment", "widget_integral", "emission", "published"];
+
+/// Who may switch on the feature of faults for tests to find: a development dependency, on purpose.
+const PLANTED: &str = "planted";
+
+/// Dependencies, and features of other names, that switch it on in what is not a test.
+fn planted_faults(metadata: &Value) -> Vec<String> {
+    let mut faults = Vec::new();
+    for package in metadata["packages"].as_array().unwrap() {
+        let name = package["name"].as_str().unwrap();
+        for dependency in package["dependencies"].as_array().unwrap() {
+            let asks = dependency["features"].as_array().unwrap().iter().any(|feature| feature == PLANTED);
+            if asks && dependency["kind"] != "dev" {
+                faults.push(format!("{name} depends on {} with {PLANTED}", dependency["name"]));
+            }
+        }
+        for (feature, others) in package["features"].as_object().unwrap() {
+            let is_planted = |other: &Value| other.as_str().unwrap().rsplit('/').next() == Some(PLANTED);
+            if others.as_array().unwrap().iter().any(is_planted) {
+                faults.push(format!("{name}: feature {feature} switches on {PLANTED}"));
+            }
+        }
+    }
+    faults
+}
 
 /// Uses of optics' integrals: by path, in a group, by glob or under another name.
 fn closed_form_faults(path: &str, text: &str) -> Vec<String> {
@@ -401,6 +430,23 @@ mod planted {
         assert_eq!(direction_faults(&graph, &[("a", &["d", "x"]), ("c", &["a"])]), [""; 0]);
         assert_eq!(direction_faults(&graph, &[("a", &["b", "c"])]), ["a knows b", "a knows c"]);
         assert_eq!(direction_faults(&graph, &[("gone", &["a"])]).len(), 1);
+    }
+
+    #[test]
+    fn planted() {
+        let metadata = |kind: Value, asked: &[&str], features: Value| {
+            let dependency = json!({ "name": "tetlux-render", "kind": kind, "features": asked });
+            json!({ "packages": [{ "name": "p", "dependencies": [dependency], "features": features }] })
+        };
+        let none = || json!({ "planted": [] });
+        assert!(planted_faults(&metadata(json!("dev"), &["planted"], none())).is_empty());
+        assert!(planted_faults(&metadata(Value::Null, &["other"], none())).is_empty());
+        for kind in [Value::Null, json!("build")] {
+            assert_eq!(planted_faults(&metadata(kind, &["other", "planted"], none())).len(), 1);
+        }
+        for features in [json!({ "default": ["planted"] }), json!({ "all": ["x", "tetlux-render/planted"] })] {
+            assert_eq!(planted_faults(&metadata(Value::Null, &[], features)).len(), 1);
+        }
     }
 
     #[test]

@@ -25,6 +25,8 @@ mod gaps;
 mod method;
 mod order;
 mod orderer;
+#[cfg(feature = "planted")]
+pub mod planted;
 mod power;
 mod sampling;
 mod search;

@@ -119,6 +119,8 @@ impl Orderer {
             report.gap_arrows = gaps.arrows.len();
             (report.overlap_pixels, report.overlap_cells) = (gaps.overlap_pixels, gaps.overlap_cells);
         }
+        #[cfg(feature = "planted")]
+        crate::planted::apply(states, &mut gaps.arrows);
         seeds.clear();
         if method == Method::Mpvonc || !gaps.arrows.is_empty() {
             timed(stages, "seeds", || farthest_entries(mesh, facts, codes, &eye, far, seeds));

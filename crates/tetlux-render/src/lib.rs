@@ -52,6 +52,8 @@ mod look;
 mod march;
 mod model;
 mod order;
+#[cfg(feature = "planted")]
+pub mod planted;
 mod published;
 mod resources;
 mod saved;

@@ -7,6 +7,7 @@
 #[cfg(test)]
 mod tests;
 
+use tetlux_optics::widget::Rectangle;
 use tetlux_optics::{Classification as Optics, Light, TransferFunction};
 
 use crate::{
@@ -42,6 +43,11 @@ const ROUNDING_GPU: f64 = 5e-5;
 const SCALAR_ROUNDING_CPU: f64 = 2.4e-7;
 /// See [`SCALAR_ROUNDING_CPU`].
 const SCALAR_ROUNDING_GPU: f64 = 2.4e-6;
+/// Where rays enter and leave cells is good to so much of the mesh's diagonal: little, but of a sheet so thin that it is all
+/// of its depth, seen aslant (of sheets 1 to 1e-6 of their width thin and of optical depth 1, doubled).
+const LENGTH_ROUNDING_CPU: f64 = 3e-8;
+/// See [`LENGTH_ROUNDING_CPU`].
+const LENGTH_ROUNDING_GPU: f64 = 6e-8;
 
 /// The figure of a choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -225,6 +231,17 @@ fn depth_and_spread(scene: &Scene, measures: &Measures) -> (f64, f64) {
     }
 }
 
+/// The largest opacity at any scalars within the fields' ranges.
+fn densest(scene: &Scene) -> f64 {
+    let (s, g) = (scene.scalar.range, scene.second.as_ref().map_or([0.0; 2], |second| second.range));
+    match &scene.classification {
+        Optics::OneField(transfer) => transfer.max_opacity(s),
+        Optics::TwoFields(transfer) => transfer.max_opacity(g),
+        Optics::Widgets(function) => function.max_opacity_over(&Rectangle { s, g }),
+        Optics::Image(image) => image.max_opacity_over(&Rectangle { s, g }),
+    }
+}
+
 /// The largest luminance, lit.
 fn lit(scene: &Scene) -> f64 {
     let by = |light: &Light, plain: f64| {
@@ -329,11 +346,12 @@ pub(crate) fn state(scene: &Scene, measures: &Measures, method: &Method, spent: 
     let mut stated = Stated::default();
     let budget = scene.method.max_error;
     let brightest = lit(scene).max(1.0);
-    let mut rounding = of_rounding(method.backend) * brightest;
+    let gpu = method.backend == Backend::Gpu;
+    let lengths = densest(scene) * measures.extent * if gpu { LENGTH_ROUNDING_GPU } else { LENGTH_ROUNDING_CPU };
+    let mut rounding = (of_rounding(method.backend) + lengths.min(1.0)) * brightest;
     let wider = || "ask for no less with --max-error".to_string();
     if let Optics::OneField(transfer) = &scene.classification {
         let (steepest, steps) = steepness(transfer, scene.scalar.range, measures.edge);
-        let gpu = method.backend == Backend::Gpu;
         rounding += steepest * if gpu { SCALAR_ROUNDING_GPU } else { SCALAR_ROUNDING_CPU };
         stated.beyond = steps.then(|| {
             "rays that run along a step of the transfer function, about one pixel in 50 000, may be off by more: give \

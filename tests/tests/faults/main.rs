@@ -15,6 +15,7 @@ mod grid_rays;
 mod layers;
 mod no_data;
 mod random_scenes;
+mod thin_sheets;
 mod transfer_functions;
 
 use glam::DVec3;

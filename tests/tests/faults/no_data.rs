@@ -10,9 +10,8 @@ use tetlux_render::Model;
 use tetlux_scene::{
     Backend, CellProjection, Emphasized, Integrator, Interpolation, Lighting, Method, Order, Plan, Scene, Target,
 };
-use tetlux_tests::{Random, Way, largest_error, reference, render, renderer, scene, transfer, transfer_of, white};
+use tetlux_tests::{Random, Recipe, Way, largest_error, reference, render, renderer, scene, transfer, transfer_of, white};
 
-use super::random_scenes::{random_camera, random_parts};
 
 /// Some twenty segments a pixel, each with cuts and weights in single precision.
 const TOLERANCE: f64 = 1e-4;
@@ -21,6 +20,9 @@ const TOLERANCE: f64 = 1e-4;
 const OF_BUDGET: f64 = 1.1e-3;
 
 const SEEDS: u64 = 8;
+
+/// Pixels along a side.
+const SIDE: u32 = 32;
 
 /// Values of which about one in `every` is not finite.
 fn sprinkled(random: &mut Random, values: Vec<f64>, every: usize) -> Vec<f64> {
@@ -40,7 +42,7 @@ fn sprinkled(random: &mut Random, values: Vec<f64>, every: usize) -> Vec<f64> {
 
 /// A mesh with the fields "s" and "t", each on points or on cells, both with values missing.
 fn random_mesh(random: &mut Random) -> TetMesh {
-    let parts = random_parts(random);
+    let parts = Recipe::random(random.bits(), SIDE).parts;
     let field = |name: &str, random: &mut Random| {
         let wave = DVec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
         if random.below(3) == 0 {
@@ -66,7 +68,7 @@ fn random_look(random: &mut Random) -> NoData {
 fn random_scene(random: &mut Random, mesh: &TetMesh, size: [u32; 2]) -> Scene {
     let color = [[-1.0, 0.9, 0.1, 0.2], [0.0, 0.2, 0.8, 0.3], [1.0, 0.1, 0.3, 1.0]];
     let opacity = [[-1.0, 1.5], [-0.2, 0.0], [0.1, 0.2], [0.5, 2.0], [30.0, 7.0]];
-    let scene = scene(mesh, transfer(&color, &opacity), random_camera(random), size);
+    let scene = scene(mesh, transfer(&color, &opacity), Recipe::random(random.bits(), SIDE).camera, size);
     Scene { no_data: random_look(random), ..scene }
 }
 
@@ -89,7 +91,7 @@ fn sprinkled_values_poison_no_picture_of_one_field() {
     for seed in 0..SEEDS {
         let mut random = Random::new(seed);
         let mesh = random_mesh(&mut random);
-        let mut scene = random_scene(&mut random, &mesh, [32, 32]);
+        let mut scene = random_scene(&mut random, &mesh, [SIDE; 2]);
         let truth = reference(&mesh, &scene);
         seen += usize::from(truth.iter().any(|pixel| pixel[3] > 0.0));
         assert_right(&format!("seed {seed}"), &mesh, &scene, &truth, &EXACT_WAYS, TOLERANCE);
@@ -145,10 +147,10 @@ fn sprinkled_values_poison_no_picture_of_two_fields_or_with_light() {
 fn sprinkled_values_poison_no_emphasis() {
     for seed in 0..4 {
         let mut random = Random::new(200 + seed);
-        let parts = random_parts(&mut random);
+        let parts = Recipe::random(random.bits(), SIDE).parts;
         let values = sprinkled(&mut random, parts.sample(|p| (p.x + p.y * p.z).sin()), 20);
         let mesh = tetlux_tests::mesh_with(&parts, Field::point("s", 1, values));
-        let mut scene = random_scene(&mut random, &mesh, [32, 32]);
+        let mut scene = random_scene(&mut random, &mesh, [SIDE; 2]);
         let emphasis = Emphasis { silhouette: Some(2.0), ..Emphasis::default() };
         scene.emphasis = Some(
             Emphasized::new(&emphasis, transfer_of(&scene), &mesh, &scene.scalar).unwrap_or_else(|e| panic!("{e}")),
@@ -167,7 +169,7 @@ fn every_method_shows_cells_without_data() {
     let camera = tetlux_tests::perspective(DVec3::new(3.5, -4.0, 2.8), DVec3::ZERO, 50.0);
     let base = Scene {
         no_data: NoData::new([1.0, 0.1, 0.0], 1.3).unwrap_or_default(),
-        ..scene(&mesh, plain, camera, [32, 32])
+        ..scene(&mesh, plain, camera, [SIDE; 2])
     };
     let truth = reference(&mesh, &base);
     let mut methods: Vec<Method> = Vec::new();

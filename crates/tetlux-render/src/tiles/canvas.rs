@@ -49,6 +49,10 @@ impl Canvas {
             copy.copy_from_slice(strip);
             for (column, tile) in copy.as_flattened().as_chunks::<{ 4 * PIXELS }>().0.iter().enumerate() {
                 for (i, &place) in places.iter().enumerate() {
+                    #[cfg(feature = "planted")]
+                    if crate::planted::is_lost(i % TILE as usize, i / TILE as usize) {
+                        continue;
+                    }
                     strip[i / TILE as usize * across + column * TILE as usize + i % TILE as usize] =
                         [tile[place], tile[PIXELS + place], tile[2 * PIXELS + place], tile[3 * PIXELS + place]];
                 }

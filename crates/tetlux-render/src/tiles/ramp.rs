@@ -198,6 +198,8 @@ fn add_medium<S: Simd>(
 /// Adds opacity `alpha` with the luminance at scalar `middle`, and its slope times `moment`.
 #[inline(always)]
 fn add<S: Simd>(simd: S, ramp: &Ramp, alpha: S::f32s, moment: S::f32s, middle: S::f32s, pixels: &mut Pixels<S>) {
+    #[cfg(feature = "planted")]
+    let (alpha, moment) = crate::planted::segment(simd, alpha, moment);
     let left = S::f32s::splat(simd, 1.0) - pixels[3];
     let weight = left * alpha;
     let first = middle.mul_add(weight, left * moment);
