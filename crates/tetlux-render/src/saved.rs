@@ -19,11 +19,7 @@ pub fn bytes_saved(scene: &Scene, mesh: &TetMesh, plan: &Plan, line: &SkipLine) 
     // Projected, where the CPU back end does so many at a time, and listed in the order.
     let projected = |cells: usize| {
         let cells = cells as u64;
-        if gpu {
-            cells * Variant::new(plan, data, None, false).geometry().bytes
-        } else {
-            tiles::bytes_set_up(cells)
-        }
+        if gpu { cells * Variant::new(plan, data, None, false).geometry().bytes } else { tiles::bytes_set_up(cells) }
     };
     match line.skip {
         Skip::Transparent | Skip::Faint | Skip::Outside => {

@@ -10,8 +10,9 @@ use tetlux_render::Model;
 use tetlux_scene::{
     Backend, CellProjection, Emphasized, Integrator, Interpolation, Lighting, Method, Order, Plan, Scene, Target,
 };
-use tetlux_tests::{Random, Recipe, Way, largest_error, reference, render, renderer, scene, transfer, transfer_of, white};
-
+use tetlux_tests::{
+    Random, Recipe, Way, largest_error, reference, render, renderer, scene, transfer, transfer_of, white,
+};
 
 /// Some twenty segments a pixel, each with cuts and weights in single precision.
 const TOLERANCE: f64 = 1e-4;
