@@ -76,7 +76,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<[u32; 2]>,
     /// Timed frames of each way, in turn with the others; what takes more than a processor second is timed by one, and what
-    /// takes more than 10 is not asked for more
+    /// takes more than 6 is not asked for more
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     runs: u16,
     /// Small meshes and pictures, a frame each: whether it all works

@@ -24,7 +24,7 @@ takes the NASA data sets, and with `--peer vtk` VTK's renderers of unstructured 
 frame of each way in turn. Times are medians of whole frames, from planning to the picture, without reading the file and what
 is found once a mesh; the eye moves a little from frame to frame. CPU is user and system time of all threads: on a shared
 machine compare that, and ratios of one run. What takes more than a processor second is told by one frame, on a software
-adapter its first, compiling included; what takes more than 10 is not asked for more cells and pixels than those, and the page
+adapter its first, compiling included; what takes more than 6 is not asked for more cells and pixels than those, and the page
 says so. What the plan chooses is what it chooses for `cargo xtask render`, by the same calibration of the adapter.
 ";
 

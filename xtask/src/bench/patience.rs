@@ -8,7 +8,7 @@ use tetlux_scene::Work;
 pub(crate) const ONCE: f64 = 1.0;
 
 /// Processor seconds of a frame. A way that took longer is not asked for pictures of as much work and more.
-pub(crate) const MOST: f64 = 10.0;
+pub(crate) const MOST: f64 = 6.0;
 
 /// The ways that took longer than that.
 #[derive(Default)]
@@ -57,6 +57,6 @@ mod tests {
         assert_eq!(patience.refusal("fast", &work(1e7)), None);
         assert_eq!(patience.refusal("slow", &work(0.9e5)), None, "less may be tried");
         let why = patience.refusal("slow", &work(1e6)).unwrap();
-        assert!(why.contains("15 s") && why.contains("a box"), "{why}");
+        assert!(why.contains("9 s") && why.contains("a box"), "{why}");
     }
 }
