@@ -36,7 +36,8 @@ impl Recipe {
     /// A grid displaced at random, surface included, with a smooth scalar; a transfer function with steps and peaks.
     pub fn random(seed: u64, side: u32) -> Recipe {
         let mut random = Random::new(seed);
-        let (parts, field) = body(&mut random);
+        let parts = random_parts(&mut random);
+        let field = random_field(&mut random, &parts);
         let range = range_of(&field);
         let classification = Classification::OneField(random_transfer(&mut random, range));
         let camera = random_camera(&mut random);
@@ -101,7 +102,8 @@ pub fn range_of(field: &Field) -> [f64; 2] {
     field.values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &s| [low.min(s), high.max(s)])
 }
 
-fn body(random: &mut Random) -> (Parts, Field) {
+/// A grid displaced at random, surface included, within a few units of the origin.
+pub fn random_parts(random: &mut Random) -> Parts {
     let counts = [0; 3].map(|_| 1 + random.below(4));
     let corner = DVec3::new(random.between(0.5, 2.0), random.between(0.5, 2.0), random.between(0.5, 2.0));
     let split = if random.below(2) == 0 { Split::Five } else { Split::Six };
@@ -113,9 +115,13 @@ fn body(random: &mut Random) -> (Parts, Field) {
         }
         *p = (*p * 1024.0).round() / 1024.0;
     }
+    parts
+}
+
+/// A smooth scalar at the points.
+fn random_field(random: &mut Random, parts: &Parts) -> Field {
     let wave = DVec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
-    let values = parts.sample(|p| wave.dot(p).sin() + 0.3 * p.z);
-    (parts, Field::point(FIELD, 1, values))
+    Field::point(FIELD, 1, parts.sample(|p| wave.dot(p).sin() + 0.3 * p.z))
 }
 
 /// Up to 12 nodes of each kind over the range, among them steps and narrow peaks.
@@ -192,10 +198,10 @@ fn random_image(random: &mut Random, ranges: [[f64; 2]; 2]) -> ImageFunction {
     ImageFunction::new(6, texels, ranges).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn random_camera(random: &mut Random) -> Camera {
+/// A camera that looks towards the origin's neighbourhood, from well outside to deep inside.
+pub fn random_camera(random: &mut Random) -> Camera {
     let mut direction = || DVec3::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
     let (toward, focus) = (direction(), direction() * 0.3);
-    // From well outside to deep inside.
     let position = focus + toward.normalize_or(DVec3::X) * random.between(0.2, 6.0);
     match random.below(2) {
         0 => perspective(position, focus, random.between(20.0, 100.0)),
