@@ -42,19 +42,25 @@ impl Canvas {
     /// The pixels, top row first, of tiles drawn in vectors of so many lanes.
     pub(crate) fn into_pixels(self, lanes: usize) -> Vec<[f32; 4]> {
         let (mut pixels, width, height) = (self.pixels, self.size[0] as usize, self.size[1] as usize);
-        let across = width.next_multiple_of(TILE as usize);
-        let places: [usize; PIXELS] = std::array::from_fn(|i| place(i % TILE as usize, i / TILE as usize, lanes));
-        let strip = across * TILE as usize;
-        pixels.par_chunks_mut(strip.max(1)).for_each_with(vec![[0.0; 4]; strip], |copy, strip| {
+        let side = TILE as usize;
+        let across = width.next_multiple_of(side);
+        pixels.par_chunks_mut((across * side).max(1)).for_each_with(vec![[0.0; 4]; across * side], |copy, strip| {
             copy.copy_from_slice(strip);
             for (column, tile) in copy.as_flattened().as_chunks::<{ 4 * PIXELS }>().0.iter().enumerate() {
-                for (i, &place) in places.iter().enumerate() {
-                    #[cfg(feature = "planted")]
-                    if crate::planted::is_lost(i % TILE as usize, i / TILE as usize) {
-                        continue;
+                for row in 0..side {
+                    for x in (0..side).step_by(WIDTH) {
+                        // Pixels of a row of a block lie together in each channel.
+                        let from = place(x, row, lanes);
+                        let [red, green, blue, alpha] = [0, 1, 2, 3].map(|c| &tile[c * PIXELS + from..][..WIDTH]);
+                        let to = &mut strip[row * across + column * side + x..][..WIDTH];
+                        for i in 0..WIDTH {
+                            to[i] = [red[i], green[i], blue[i], alpha[i]];
+                            #[cfg(feature = "planted")]
+                            if crate::planted::is_lost(x + i, row) {
+                                to[i] = [0.0; 4];
+                            }
+                        }
                     }
-                    strip[i / TILE as usize * across + column * TILE as usize + i % TILE as usize] =
-                        [tile[place], tile[PIXELS + place], tile[2 * PIXELS + place], tile[3 * PIXELS + place]];
                 }
             }
         });
