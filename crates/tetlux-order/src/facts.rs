@@ -155,7 +155,7 @@ impl Facts {
         self.spheres.get_or_init(|| Spheres::new(mesh, self))
     }
 
-    /// Bytes in memory, without what only `power` needs.
+    /// Bytes in memory, without what is found only when first asked for.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.planes[..]) + size_of_val(&self.owners[..]) + size_of_val(&self.faces[..])
     }

@@ -20,22 +20,20 @@ pub(super) fn is_convex(mesh: &TetMesh, facts: &Facts) -> bool {
         return false;
     }
     let surface = facts.surface(mesh);
-    let faces: Vec<[u32; 3]> =
-        surface.corners.iter().map(|c| c.map(|corner| surface.points[corner as usize])).collect();
-    has_no_concave_edge(mesh, surface, &faces) && is_simple_sphere(mesh, &faces)
+    has_no_concave_edge(mesh, surface) && is_simple_sphere(mesh, surface)
 }
 
 /// Every edge of the surface joins two faces, neither of which has the other's third vertex before it.
-fn has_no_concave_edge(mesh: &TetMesh, surface: &Surface, faces: &[[u32; 3]]) -> bool {
-    let at = |v: u32| mesh.points()[v as usize];
+fn has_no_concave_edge(mesh: &TetMesh, surface: &Surface) -> bool {
+    let Surface { points, corners: faces, edges } = surface;
+    let at = |v: u32| mesh.points()[points[v as usize] as usize];
     let normal = |face: u32| {
         let [a, b, c] = faces[face as usize].map(|v| at(v).as_dvec3());
         (b - a).cross(c - a)
     };
     let bends_back = |edge: &Edge| {
         let [first, second] = edge.faces;
-        let ends = edge.ends.map(|end| surface.points[end as usize]);
-        let Some(apex) = faces[second as usize].into_iter().find(|v| !ends.contains(v)) else { return false };
+        let Some(apex) = faces[second as usize].into_iter().find(|v| !edge.ends.contains(v)) else { return false };
         let [a, b, c] = faces[first as usize].map(at);
         match plane_sign(a, b, c, &Viewpoint::new(at(apex).as_dvec3(), true)).value {
             -1 => true,
@@ -44,18 +42,18 @@ fn has_no_concave_edge(mesh: &TetMesh, surface: &Surface, faces: &[[u32; 3]]) ->
             _ => false,
         }
     };
-    let edges = &surface.edges;
     let joins_two = 2 * edges.len() == 3 * faces.len() && edges.windows(2).all(|pair| pair[0].ends != pair[1].ends);
     joins_two && edges.iter().all(bends_back)
 }
 
 /// Euler's characteristic is 2, and every vertex has its faces round it once.
-fn is_simple_sphere(mesh: &TetMesh, faces: &[[u32; 3]]) -> bool {
-    let at = |v: u32| mesh.points()[v as usize].as_dvec3();
+fn is_simple_sphere(mesh: &TetMesh, surface: &Surface) -> bool {
+    let Surface { points, corners: faces, .. } = surface;
+    let at = |v: u32| mesh.points()[points[v as usize] as usize].as_dvec3();
     let normal = |&[a, b, c]: &[u32; 3]| (at(b) - at(a)).cross(at(c) - at(a)).normalize_or_zero();
     let turns = |face: &[u32; 3]| [0, 1, 2].map(|i| [face[i], face[(i + 1) % 3], face[(i + 2) % 3]]);
 
-    let mut vertices = vec![Vertex::NEW; mesh.points().len()];
+    let mut vertices = vec![Vertex::NEW; points.len()];
     for face in faces {
         let normal = normal(face);
         for [v, b, c] in turns(face) {
@@ -82,10 +80,9 @@ fn is_simple_sphere(mesh: &TetMesh, faces: &[[u32; 3]]) -> bool {
             vertex.turned += inward.dot(q.cross(p)).atan2(p.dot(q));
         }
     }
-    let used = || vertices.iter().filter(|vertex| vertex.edges != DVec3::ZERO || vertex.normal != DVec3::ZERO);
     // Whole turns, but for roundings.
     let simple = |v: &Vertex| (v.blunt || v.sharp) && (v.turned / TAU - 1.0).abs() < 1e-3;
-    used().all(simple) && 2 * used().count() == faces.len() + 4
+    vertices.iter().all(simple) && 2 * vertices.len() == faces.len() + 4
 }
 
 /// Far above the roundings of a few unit vectors.
