@@ -27,7 +27,7 @@ pub(crate) const CASES: &[Case] = cases! {
     "peak-1e-6", "peaks 1e-6 of the range wide, inside cells", |short| peaks(short, 1e-6);
     "peak-1e-9", "peaks 1e-9 of the range wide, which single precision does not tell from a point", |short| peaks(short, 1e-9);
     "nothing", "opacity zero everywhere", |short| input(short, radius, &COLOR, &[[0.0, 0.0], [1.0, 0.0]]);
-    "thousand-nodes", "a thousand control points of random colour and opacity", thousand_nodes;
+    "thousand-nodes", "a thousand control points of random colour and opacity (short: a hundred)", thousand_nodes;
     "wide-function", "control points from a million ranges below the data to a million above", wide_function;
     "constant-field", "one value everywhere, on a ramp", |short| values(short, |_| 7.25, [-10.0, 30.0]);
     "range-1e-30", "a field from 0 to 1e-30", |short| values(short, |u| 1e-30 * u, [0.0, 1e-30]);
@@ -107,9 +107,10 @@ fn peaks(short: bool, width: f64) -> Result<Input> {
 
 fn thousand_nodes(short: bool) -> Result<Input> {
     let mut random = Random::new(9);
-    let place = |i: u32| f64::from(i) / 999.0;
-    let color: Vec<_> = (0..1000).map(|i| [place(i), random.unit(), random.unit(), random.unit()]).collect();
-    let opacity: Vec<_> = (0..1000).map(|i| [place(i), 3.0 * random.unit()]).collect();
+    let nodes = geometry::count(short, 1000, 100);
+    let place = |i: usize| i as f64 / (nodes - 1) as f64;
+    let color: Vec<_> = (0..nodes).map(|i| [place(i), random.unit(), random.unit(), random.unit()]).collect();
+    let opacity: Vec<_> = (0..nodes).map(|i| [place(i), 3.0 * random.unit()]).collect();
     input(short, radius, &color, &opacity)
 }
 
