@@ -13,7 +13,7 @@
 // A cell may be a thousandth of the mesh wide and a thousandth of that thick: what it is made of are differences of the
 // mesh's own positions, which are exact to their last digit, and the difference of a pixel from the vertex that the
 // cell's planes have their origin at, of which the host knows the last digits.
-import package::lib::view::{View, Vertex, view, ORTHOGRAPHIC, rotated, from_pivot, deeper};
+import package::lib::view::{View, Vertex, view, ORTHOGRAPHIC, rotated, beside_pivot, deeper};
 
 struct Cell {
     // The plane of the face opposite each vertex: (dw/dx, dw/dy, w at the plane's origin, +1 front or -1 back). An origin
@@ -110,9 +110,9 @@ fn face_normal(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
 // sum of the terms without their signs. From the vertex that is least, and in the mesh's own axes: one along which a face
 // runs adds nothing, not even rounding, however long the face is.
 fn side_of_eye(a: Vertex, b: Vertex, c: Vertex, normal: vec3<f32>, turned: vec3<f32>) -> vec2<f32> {
-    let from_a = normal * from_pivot(a.position);
-    let from_b = normal * from_pivot(b.position);
-    let from_c = normal * from_pivot(c.position);
+    let from_a = normal * beside_pivot(a.position);
+    let from_b = normal * beside_pivot(b.position);
+    let from_c = normal * beside_pivot(c.position);
     let one = vec3<f32>(1.0);
     let sums = vec3<f32>(dot(abs(from_a), one), dot(abs(from_b), one), dot(abs(from_c), one));
     var least = from_a;

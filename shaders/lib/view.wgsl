@@ -43,13 +43,13 @@ fn rotated(direction: vec3<f32>) -> vec3<f32> {
 }
 
 // A position relative to the pivot.
-fn from_pivot(position: vec3<f32>) -> vec3<f32> {
+fn beside_pivot(position: vec3<f32>) -> vec3<f32> {
     return (position - view.pivot_high.xyz) - view.pivot_low.xyz;
 }
 
 // The same in the axes of eye space.
 fn frame_of(position: vec3<f32>) -> vec3<f32> {
-    return rotated(from_pivot(position));
+    return rotated(beside_pivot(position));
 }
 
 // A point of the mesh as it is seen; the host finds it in double precision.

@@ -82,7 +82,7 @@ impl Lens {
     }
 
     fn side_of_eye(&self, face: [&Vertex; 3], normal: Vec3, turned: Vec3) -> [f32; 2] {
-        let from = face.map(|vertex| normal * self.from_pivot(vertex.position));
+        let from = face.map(|vertex| normal * self.beside_pivot(vertex.position));
         let sums = from.map(|terms| terms.abs().element_sum());
         let mut least = from[0];
         if sums[1] < sums[0] {

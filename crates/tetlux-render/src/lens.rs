@@ -19,12 +19,12 @@ impl Lens {
         Vec3::from([self.view.right, self.view.down, self.view.forward].map(|row| DeviceView::axis(row).dot(direction)))
     }
 
-    pub(crate) fn from_pivot(&self, position: Vec3) -> Vec3 {
+    pub(crate) fn beside_pivot(&self, position: Vec3) -> Vec3 {
         (position - DeviceView::axis(self.view.pivot_high)) - DeviceView::axis(self.view.pivot_low)
     }
 
     pub(crate) fn frame_of(&self, position: Vec3) -> Vec3 {
-        self.rotated(self.from_pivot(position))
+        self.rotated(self.beside_pivot(position))
     }
 
     /// The pivot's position in eye space.
