@@ -27,4 +27,4 @@ struct Look {
     unused: vec2<f32>,
 }
 
-@group(0) @binding(10) var<uniform> look: Look;
+@group(0) @binding(10) var<storage, read> look: Look;
