@@ -50,7 +50,7 @@ const JOBS: [Job; 3] = [
     },
     Job {
         what: "killed while an adapter is measured",
-        args: &["render", "--grid", "24", "--size", "320x240", "--backend", "gpu", "--output", "g.png"],
+        args: &["render", "--grid", "20", "--size", "480x360", "--backend", "gpu", "--output", "g.png"],
         fresh: &["cache"],
         outputs: &[],
         stored: Some(("cache", "json")),
