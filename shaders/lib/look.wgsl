@@ -29,4 +29,4 @@ struct Look {
     no_data: vec4<f32>,
 }
 
-@group(0) @binding(10) var<uniform> look: Look;
+@group(0) @binding(10) var<storage, read> look: Look;

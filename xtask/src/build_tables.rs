@@ -111,9 +111,7 @@ pub(crate) fn run(args: &Args) -> Result<bool> {
     }
     bar.finish_and_clear();
     if !stored.is_empty() {
-        let mut manifest = Manifest::read(&store);
-        stored.iter().for_each(|table| manifest.insert(&table.metadata));
-        manifest.write(&store)?;
+        Manifest::add(&store, stored.iter().map(|table| &table.metadata))?;
     }
     if args.plot {
         stored.iter().try_for_each(|table| plot(&table.table, &args.output))?;

@@ -25,7 +25,7 @@ const LARGEST: u64 = 1 << 16;
 /// One adapter, with one driver, as one version of tetlux measured it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Kept {
+pub(crate) struct Kept {
     adapter: String,
     driver: String,
     version: String,
@@ -37,7 +37,7 @@ impl Kept {
         self.adapter == device.name && self.driver == device.driver && self.version == env!("CARGO_PKG_VERSION")
     }
 
-    fn is_sound(&self) -> bool {
+    pub(crate) fn is_sound(&self) -> bool {
         let Costs { pt, tiles, march } = self.costs;
         let sound = |cost: Cost| [cost.picture, cost.cell, cost.fragment].iter().all(|c| c.is_finite() && *c >= 0.0);
         [pt, tiles, march].into_iter().all(sound)
@@ -95,7 +95,7 @@ pub(crate) fn forget(folder: &Path) -> std::io::Result<()> {
 }
 
 /// All that is kept and sound; what cannot be read is nothing.
-fn read(file: &Path) -> Vec<Kept> {
+pub(crate) fn read(file: &Path) -> Vec<Kept> {
     let small = std::fs::metadata(file).is_ok_and(|metadata| metadata.len() <= LARGEST);
     let text = if small { std::fs::read(file).unwrap_or_default() } else { Vec::new() };
     let mut all: Vec<Kept> = serde_json::from_slice(&text).unwrap_or_default();

@@ -74,6 +74,8 @@ enum Command {
     /// Try hard geometry, optics, faults, hostile input and long runs, and write a page of what held
     #[command(after_help = stress::EXAMPLES)]
     Stress(stress::Args),
+    #[command(hide = true)]
+    StressCases(stress::CasesArgs),
     /// Run format, lints, all tests and the documentation; installs a Vulkan driver on Debian if there is none
     Test,
 }
@@ -91,6 +93,7 @@ fn main() -> ExitCode {
         Command::Methods(args) => methods::run(&args).map(|()| true),
         Command::Bench(args) => bench::run(&args).map(|()| true),
         Command::Stress(args) => stress::run(&args),
+        Command::StressCases(args) => stress::run_cases(&args).map(|()| true),
         Command::Test => test::run().map(|()| true),
     };
     match result {

@@ -13,6 +13,16 @@ pub(crate) fn peak() -> Option<u64> {
     status("VmHWM:")
 }
 
+/// The bytes that are resident now.
+pub(crate) fn resident() -> Option<u64> {
+    status("VmRSS:")
+}
+
+/// The bytes of address space that the process has taken.
+pub(crate) fn address_space() -> Option<u64> {
+    status("VmSize:")
+}
+
 /// The bytes of memory that the machine has.
 pub(crate) fn of_machine() -> Option<u64> {
     entry(&fs::read_to_string("/proc/meminfo").ok()?, "MemTotal:")

@@ -1,5 +1,6 @@
 //! Files that are either written whole or not at all.
 
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -10,11 +11,17 @@ use crate::ImageError;
 /// Writes a file through `write`, so that `path` holds either all of it or what it held before.
 ///
 /// The bytes go to a temporary file in the same folder, reach the disk, and are then renamed to `path`. On any
-/// failure the temporary file is removed and `path` is left alone.
+/// failure the temporary file is removed and `path` is left alone. What is there and no regular file, as a pipe or
+/// `/dev/stdout`, is not replaced: the bytes go straight to it.
 ///
 /// # Errors
 /// [`ImageError::Io`] if the folder does not take the temporary file, `write` fails, or the rename fails.
 pub fn write_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), ImageError> {
+    let failed = |source| ImageError::io(path, "write", source);
+    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir()) {
+        let mut device = BufWriter::new(File::options().write(true).open(path).map_err(failed)?);
+        return write(&mut device).and_then(|()| device.flush()).map_err(failed);
+    }
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -29,17 +36,15 @@ pub fn write_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::R
         .map_err(|source| ImageError::io(path, "create a temporary file beside it", source))?;
 
     let mut buffered = BufWriter::new(file);
-    write(&mut buffered).map_err(|source| ImageError::io(path, "write", source))?;
-    let file = buffered.into_inner().map_err(|error| ImageError::io(path, "write", error.into_error()))?;
-    file.as_file().sync_all().map_err(|source| ImageError::io(path, "write", source))?;
+    write(&mut buffered).map_err(failed)?;
+    let file = buffered.into_inner().map_err(|error| failed(error.into_error()))?;
+    file.as_file().sync_all().map_err(failed)?;
     file.persist(path).map_err(|error| ImageError::io(path, "rename the finished file to it", error.error))?;
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {
@@ -84,6 +89,25 @@ mod tests {
 
         let absent = folder.path().join("absent").join("file");
         assert!(matches!(write_atomically(&absent, |_| Ok(())), Err(ImageError::Io { path, .. }) if path == absent));
+    }
+
+    /// As one that is run by the superuser could: they once were.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_device_is_written_to_and_not_replaced() {
+        use std::os::unix::fs::FileTypeExt;
+
+        let folder = tempfile::tempdir().unwrap();
+        for (device, takes) in [("/dev/null", true), ("/dev/full", false)] {
+            let link = folder.path().join("link");
+            std::os::unix::fs::symlink(device, &link).unwrap();
+            let written = write_atomically(&link, |file| file.write_all(b"x"));
+            assert_eq!(written.is_ok(), takes, "{device}");
+            let named = written.err().is_none_or(|error| error.to_string().contains("link: cannot write"));
+            assert!(named && fs::metadata(&link).unwrap().file_type().is_char_device(), "{device}");
+            assert_eq!(names(folder.path()), ["link"]);
+            fs::remove_file(link).unwrap();
+        }
     }
 
     #[cfg(unix)]

@@ -83,6 +83,15 @@ pub enum ImageError {
         reason: String,
     },
 
+    /// The file holds an image that cannot be made.
+    #[error("{path}: {source}", path = .path.display())]
+    Unfit {
+        /// The file.
+        path: PathBuf,
+        /// Why: [`ImageError::Size`] or [`ImageError::Memory`].
+        source: Box<ImageError>,
+    },
+
     /// No layer of the file has the channels R, G and B.
     #[error("{path}: no layer has the channels R, G and B (found: {found}); export it again as RGB or RGBA", path = .path.display())]
     Channels {
@@ -105,6 +114,11 @@ pub enum ImageError {
 impl ImageError {
     pub(crate) fn io(path: &Path, action: &'static str, source: io::Error) -> Self {
         Self::Io { path: path.to_owned(), action, source }
+    }
+
+    /// An image that cannot be made, of a file.
+    pub(crate) fn unfit(path: &Path, source: ImageError) -> Self {
+        Self::Unfit { path: path.to_owned(), source: Box::new(source) }
     }
 
     pub(crate) fn decode(path: &Path, reason: impl ToString) -> Self {

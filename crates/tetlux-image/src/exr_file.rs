@@ -11,8 +11,8 @@ use exr::meta::attribute::{AttributeValue, LineOrder, Text};
 use exr::meta::header::{Header, LayerAttributes};
 use exr::prelude::{Blocks, Compression, Layer, ReadChannels, ReadLayers, SpecificChannels, Vec2, WritableImage};
 
-use crate::image::pixel_count;
-use crate::{Image, ImageError, write_atomically};
+use crate::image::{pixel_count, zeroed};
+use crate::{Image, ImageError, open_file, write_atomically};
 
 /// Name of the text attribute that holds an image's metadata (JSON).
 pub const METADATA_ATTRIBUTE: &str = "tetlux";
@@ -55,12 +55,13 @@ pub fn write_exr(image: &Image, path: &Path, metadata: Option<&str>) -> Result<(
 ///
 /// # Errors
 /// [`ImageError::Io`] if the file cannot be opened; [`ImageError::Decode`] if it is no OpenEXR file, is damaged or
-/// truncated, or is deep or subsampled; [`ImageError::Channels`] if no layer has R, G and B; [`ImageError::Size`]
+/// truncated, or is deep or subsampled; [`ImageError::Channels`] if no layer has R, G and B; [`ImageError::Unfit`]
 /// if the layer exceeds the limits of an [`Image`], found before anything of that size is allocated.
 pub fn read_exr(path: &Path) -> Result<Image, ImageError> {
     let reader = open(path)?;
     let header = color_header(path, reader.headers())?;
-    pixel_count(header.layer_size.width() as u64, header.layer_size.height() as u64)?;
+    let (width, height) = (header.layer_size.width() as u64, header.layer_size.height() as u64);
+    pixel_count(width, height).map_err(|error| ImageError::unfit(path, error))?;
 
     let decode = || {
         exr::prelude::read()
@@ -84,7 +85,7 @@ pub fn read_exr(path: &Path) -> Result<Image, ImageError> {
     let decoded = catch_unwind(AssertUnwindSafe(decode))
         .map_err(|_| ImageError::decode(path, "a compressed block is damaged"))?
         .map_err(|error| ImageError::decode(path, error))?;
-    decoded.layer_data.channel_data.pixels?.finish(path)
+    decoded.layer_data.channel_data.pixels.map_err(|error| ImageError::unfit(path, error))?.finish(path)
 }
 
 /// Reads the text of the attribute [`METADATA_ATTRIBUTE`] of an OpenEXR file, without its pixels; `None` if the
@@ -107,7 +108,7 @@ pub fn read_exr_metadata(path: &Path) -> Result<Option<String>, ImageError> {
 
 /// Opens the file and reads its headers.
 fn open(path: &Path) -> Result<Reader<BufReader<File>>, ImageError> {
-    let file = File::open(path).map_err(|source| ImageError::io(path, "open", source))?;
+    let file = open_file(path).map_err(|source| ImageError::io(path, "open", source))?;
     exr::block::read(BufReader::new(file), false).map_err(|error| ImageError::decode(path, error))
 }
 
@@ -141,7 +142,8 @@ impl Canvas {
     fn new(size: Vec2<usize>) -> Result<Self, ImageError> {
         let side = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
         let image = Image::new(side(size.width()), side(size.height()))?;
-        let given = vec![false; image.pixels().len()];
+        let given =
+            zeroed(image.pixels().len()).ok_or(ImageError::Memory { width: image.width(), height: image.height() })?;
         Ok(Self { image, given })
     }
 

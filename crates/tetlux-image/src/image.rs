@@ -10,6 +10,12 @@ pub const MAX_SIDE: u32 = 32_768;
 /// Bounds what a small hostile file can make a reader allocate.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
+/// So many zeros, if there is memory for them. It is taken from the system zeroed already where it can be, so that what is
+/// never written takes none: a file may promise more than it gives.
+pub(crate) fn zeroed<T: bytemuck::Zeroable>(count: usize) -> Option<Vec<T>> {
+    bytemuck::allocation::try_zeroed_vec(count).ok()
+}
+
 /// A linear RGBA image in `f32`, premultiplied by alpha, top row first.
 ///
 /// Colour and alpha are not confined to 0..1; NaN and infinities are kept, so that [`compare`](crate::compare) sees
@@ -29,9 +35,7 @@ impl Image {
     /// [`ImageError::Memory`] if there is no memory for it.
     pub fn new(width: u32, height: u32) -> Result<Self, ImageError> {
         let count = pixel_count(width.into(), height.into())?;
-        let mut pixels = Vec::new();
-        pixels.try_reserve_exact(count).map_err(|_| ImageError::Memory { width, height })?;
-        pixels.resize(count, [0.0; 4]);
+        let pixels = zeroed(count).ok_or(ImageError::Memory { width, height })?;
         Ok(Self { width, height, pixels })
     }
 

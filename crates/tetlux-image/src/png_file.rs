@@ -1,13 +1,12 @@
 //! PNG files, to be looked at: 8 bits a channel.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
 use png::{BitDepth, ColorType, Decoder, Encoder, SrgbRenderingIntent, Transformations};
 
-use crate::image::pixel_count;
-use crate::{Image, ImageError, write_atomically};
+use crate::image::{pixel_count, zeroed};
+use crate::{Image, ImageError, open_file, write_atomically};
 
 /// How a linear value becomes a stored one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,29 +35,33 @@ pub fn write_png(image: &Image, path: &Path, encoding: Encoding) -> Result<(), I
 ///
 /// # Errors
 /// [`ImageError::Io`] if the file cannot be opened, [`ImageError::Decode`] if it is no PNG, is damaged or truncated,
-/// [`ImageError::Size`] if it exceeds the limits of an [`Image`], found before anything of that size is allocated.
+/// [`ImageError::Unfit`] if it exceeds the limits of an [`Image`], found before anything of that size is allocated.
 pub fn read_png(path: &Path) -> Result<Image, ImageError> {
-    let file = File::open(path).map_err(|error| ImageError::io(path, "open", error))?;
+    let file = open_file(path).map_err(|error| ImageError::io(path, "open", error))?;
     let failed = |error: png::DecodingError| ImageError::decode(path, error);
     let mut decoder = Decoder::new(BufReader::new(file));
     decoder.set_transformations(Transformations::normalize_to_color8() | Transformations::ALPHA);
     let header = decoder.read_header_info().map_err(failed)?;
     let (width, height) = (header.width, header.height);
-    pixel_count(u64::from(width), u64::from(height))?;
+    let unfit = |error| ImageError::unfit(path, error);
+    pixel_count(u64::from(width), u64::from(height)).map_err(unfit)?;
     let mut reader = decoder.read_info().map_err(failed)?;
     let size = reader.output_buffer_size().ok_or_else(|| ImageError::decode(path, "it is too large"))?;
-    let mut samples = vec![0; size];
+    let memory = || unfit(ImageError::Memory { width, height });
+    let mut samples: Vec<u8> = zeroed(size).ok_or_else(memory)?;
     reader.next_frame(&mut samples).map_err(failed)?;
     let linear = |byte: u8| {
         let value = f32::from(byte) / 255.0;
         if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
     };
     let channels = reader.output_color_type().0.samples();
-    let pixels = samples.chunks_exact(channels).map(|s| {
+    let mut pixels = Vec::new();
+    pixels.try_reserve_exact(samples.len() / channels).map_err(|_| memory())?;
+    pixels.extend(samples.chunks_exact(channels).map(|s| {
         let [r, g, b] = if channels < 3 { [s[0]; 3] } else { [s[0], s[1], s[2]] };
         [linear(r), linear(g), linear(b), f32::from(s[channels - 1]) / 255.0]
-    });
-    Image::from_pixels(width, height, pixels.collect())
+    }));
+    Image::from_pixels(width, height, pixels)
 }
 
 fn encode(image: &Image, encoding: Encoding) -> Result<Vec<u8>, png::EncodingError> {

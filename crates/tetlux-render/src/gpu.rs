@@ -187,6 +187,13 @@ impl Gpu {
         drawn.map_err(|e| self.failed(open, e))
     }
 
+    /// Loses the device, if it is open.
+    pub(crate) fn lose(&self) {
+        if let Some(open) = self.open.lock().unwrap_or_else(PoisonError::into_inner).as_ref() {
+            open.device.destroy();
+        }
+    }
+
     /// The device, opened if it was not, or anew if it is lost.
     fn opened(&self, stages: &mut Stages) -> Result<Arc<Open>, RenderError> {
         let mut known = self.open.lock().unwrap_or_else(PoisonError::into_inner);
@@ -236,7 +243,7 @@ impl Gpu {
         let result = work();
         // Scopes end in the reverse order of their beginning.
         let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
-        match errors.collect::<Vec<_>>().first() {
+        match cause(&errors.collect::<Vec<_>>()) {
             Some(error) => Err(self.reported(open, error)),
             None => Ok(result),
         }
@@ -292,6 +299,11 @@ impl Gpu {
         }
         Ok(())
     }
+}
+
+/// Which of the errors of some work the others follow from: without memory, what was to be made is invalid wherever it is used.
+fn cause(errors: &[wgpu::Error]) -> Option<&wgpu::Error> {
+    errors.iter().find(|error| matches!(error, wgpu::Error::OutOfMemory { .. })).or(errors.first())
 }
 
 /// What `make` makes for a variant, once.

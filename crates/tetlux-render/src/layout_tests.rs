@@ -7,7 +7,7 @@ use tetlux_optics::widget_f32::Widget;
 
 use crate::device_view::DeviceView;
 use crate::gpu::frame::Batch;
-use crate::gpu::look::LookUniform;
+use crate::gpu::look::LookBlock;
 use crate::gpu::march::Limits;
 use crate::gpu::radix::Digit;
 use crate::gpu::scan::Scanned;
@@ -87,22 +87,22 @@ fn the_decoding_of_tables() {
 #[test]
 fn the_look() {
     let ours = named([
-        ("shares", offset_of!(LookUniform, shares)),
-        ("direction", offset_of!(LookUniform, direction)),
-        ("silhouette", offset_of!(LookUniform, silhouette)),
-        ("errors", offset_of!(LookUniform, errors)),
-        ("slope", offset_of!(LookUniform, slope)),
-        ("curvature", offset_of!(LookUniform, curvature)),
-        ("scale", offset_of!(LookUniform, scale)),
-        ("origin", offset_of!(LookUniform, origin)),
-        ("size", offset_of!(LookUniform, size)),
-        ("color_pieces", offset_of!(LookUniform, color_pieces)),
-        ("pieces", offset_of!(LookUniform, pieces)),
-        ("emission", offset_of!(LookUniform, emission)),
-        ("unit", offset_of!(LookUniform, unit)),
-        ("unused", offset_of!(LookUniform, unused)),
+        ("shares", offset_of!(LookBlock, shares)),
+        ("direction", offset_of!(LookBlock, direction)),
+        ("silhouette", offset_of!(LookBlock, silhouette)),
+        ("errors", offset_of!(LookBlock, errors)),
+        ("slope", offset_of!(LookBlock, slope)),
+        ("curvature", offset_of!(LookBlock, curvature)),
+        ("scale", offset_of!(LookBlock, scale)),
+        ("origin", offset_of!(LookBlock, origin)),
+        ("size", offset_of!(LookBlock, size)),
+        ("color_pieces", offset_of!(LookBlock, color_pieces)),
+        ("pieces", offset_of!(LookBlock, pieces)),
+        ("emission", offset_of!(LookBlock, emission)),
+        ("unit", offset_of!(LookBlock, unit)),
+        ("unused", offset_of!(LookBlock, unused)),
     ]);
-    assert_eq!(layout_in("lib::look", "Look"), (ours, size_of::<LookUniform>()));
+    assert_eq!(layout_in("lib::look", "Look"), (ours, size_of::<LookBlock>()));
 }
 
 #[test]

@@ -201,9 +201,20 @@ impl Renderer {
         Renderer { instructions, ..self }
     }
 
+    /// One that has no adapter, and looks for none: the processor draws.
+    pub fn without_adapter() -> Renderer {
+        Renderer { gpu: None, orderer: Mutex::default() }
+    }
+
     /// The adapter there is, for the plan.
     pub fn device(&self) -> Option<&Device> {
         self.gpu.as_ref().map(gpu::Gpu::device)
+    }
+
+    /// Loses the device, as when a driver is reset: the picture that is being drawn fails with [`RenderError::Lost`], and the
+    /// next opens the device anew. For programs that try whether they stand it.
+    pub fn lose_device(&self) {
+        self.gpu.iter().for_each(gpu::Gpu::lose);
     }
 
     /// The stable order of some keys, found on the adapter by the radix sort that tiles are binned by: where in `keys` the

@@ -1,9 +1,10 @@
 //! The scene file, checked as far as it can be without its mesh.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use tetlux_image::{read_exr, read_png};
+use tetlux_image::{open_file, read_image};
 use tetlux_mesh::{Component, Location, ScalarField, TetMesh};
 use tetlux_optics::preset::read_preset;
 use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
@@ -142,6 +143,9 @@ pub struct CameraSpec {
     /// Depth before which nothing is seen.
     pub near: f64,
 }
+
+/// Bytes of a scene or preset file: far above all presets of ParaView in one.
+const LONGEST_TEXT: u64 = 64 << 20;
 
 /// Direction of view where the scene says nothing: three quarters from the front, from above.
 const DEFAULT_DIRECTION: DVec3 = DVec3::new(-1.0, 1.5, -0.8);
@@ -375,8 +379,7 @@ pub(crate) fn gradient_name(scalar: &ScalarField) -> String {
 }
 
 fn image_function(path: &Path, range: [[f64; 2]; 2], max_opacity: f64) -> Result<ImageFunction, SceneError> {
-    let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-    let image = if is_png { read_png(path)? } else { read_exr(path)? };
+    let image = read_image(path)?;
     let width = image.width() as usize;
     let rows = image.pixels().chunks(width).rev();
     let texels = rows.flatten().map(|&[r, g, b, a]| [r, g, b, (f64::from(a) * max_opacity) as f32]).collect();
@@ -396,6 +399,16 @@ fn stretched(nodes: &TransferFunction, range: [f64; 2]) -> TransferFunction {
     TransferFunction::new(color, opacity).unwrap_or_else(|_| nodes.clone())
 }
 
+/// The text of a scene or preset, of [`LONGEST_TEXT`] at most.
 fn read_text(path: &Path) -> Result<String, SceneError> {
-    std::fs::read_to_string(path).map_err(|source| SceneError::Read { path: path.into(), source })
+    let read = || {
+        let mut text = String::new();
+        open_file(path)?.take(LONGEST_TEXT + 1).read_to_string(&mut text)?;
+        if text.len() as u64 > LONGEST_TEXT {
+            let message = format!("it is longer than {LONGEST_TEXT} bytes, and no scene or preset");
+            return Err(std::io::Error::new(std::io::ErrorKind::FileTooLarge, message));
+        }
+        Ok(text)
+    };
+    read().map_err(|source| SceneError::Read { path: path.into(), source })
 }

@@ -1,6 +1,6 @@
 //! `manifest.json`: which tables there are, for people and for other programs. Reading a table does not depend on it.
 
-use std::fs;
+use std::fs::{self, File};
 
 use serde::{Deserialize, Serialize};
 use tetlux_image::{ImageError, write_atomically};
@@ -11,6 +11,9 @@ use crate::table::MeasuredError;
 
 /// Name of the manifest in the folder of tables.
 const FILE: &str = "manifest.json";
+
+/// Held while the manifest is changed.
+const LOCK: &str = ".manifest.lock";
 
 /// The tables of one version.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,22 +71,39 @@ impl Manifest {
         }
     }
 
-    /// Adds a table, or replaces the entry of its file.
-    pub fn insert(&mut self, metadata: &Metadata) {
+    /// Adds tables to the manifest of a store, or replaces the entries of their files. Others that do so at the same time
+    /// wait for one another, so that no entry is lost.
+    ///
+    /// # Errors
+    /// [`StoreError::Write`].
+    pub fn add<'a>(store: &Store, tables: impl IntoIterator<Item = &'a Metadata>) -> Result<Self, StoreError> {
+        let tables: Vec<&Metadata> = tables.into_iter().collect();
+        let with = |mut manifest: Self| {
+            tables.iter().for_each(|metadata| manifest.insert(metadata));
+            manifest
+        };
+        let before = Self::read(store);
+        if before == with(before.clone()) {
+            return Ok(before);
+        }
+        let path = store.folder().join(LOCK);
+        let io = |source| ImageError::Io { path: path.clone(), action: "lock", source };
+        // Released when it is dropped, and by the system where the program is killed.
+        let lock = File::create(&path).map_err(io)?;
+        lock.lock().map_err(io)?;
+        let manifest = with(Self::read(store));
+        manifest.write(store)?;
+        Ok(manifest)
+    }
+
+    fn insert(&mut self, metadata: &Metadata) {
         let entry = Entry::new(metadata);
         self.tables.retain(|other| other.file != entry.file);
         self.tables.push(entry);
         self.tables.sort_by(|a, b| a.file.cmp(&b.file));
     }
 
-    /// Writes the manifest of a store if it is not there yet with this content.
-    ///
-    /// # Errors
-    /// [`StoreError::Write`].
-    pub fn write(&self, store: &Store) -> Result<(), StoreError> {
-        if *self == Self::read(store) && !self.tables.is_empty() {
-            return Ok(());
-        }
+    fn write(&self, store: &Store) -> Result<(), StoreError> {
         let path = store.folder().join(FILE);
         let mut text = serde_json::to_string_pretty(self)
             .map_err(|error| ImageError::Encode { path: path.clone(), reason: error.to_string() })?;

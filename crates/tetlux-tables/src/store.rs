@@ -1,11 +1,11 @@
 //! Tables on disk: OpenEXR files that say what they hold, and are not believed until it is found true.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use tetlux_image::ImageError;
+use tetlux_image::{ImageError, open_file};
 
 use crate::axis::Axis;
 use crate::exr_file::{self, Opened, picture_size};
@@ -268,7 +268,7 @@ impl Store {
     fn open(&self, spec: &TableSpec) -> Result<(Opened, Metadata), StoreError> {
         spec.validate()?;
         let (path, remedy) = (self.path(spec), remedy(spec));
-        let file = match File::open(&path) {
+        let file = match open_file(&path) {
             Ok(file) => file,
             Err(source) if source.kind() == io::ErrorKind::NotFound => {
                 let hint = self.others(spec);

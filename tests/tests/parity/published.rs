@@ -45,7 +45,7 @@ fn analytic_segments() {
         let inputs: Vec<f32> = (0..ROWS).flat_map(|_| random_segment(&mut random)).collect();
         let look = LookBytes { published: (0, 0.5, 0.0), ..LookBytes::none() }.bytes();
         let bound = [
-            Bound::Uniform(0, 10, &look),
+            Bound::Storage(0, 10, &look),
             Bound::Storage(0, 11, &widget_bytes(&device)),
             Bound::Uniform(2, 0, &lookup(1.0)),
             Bound::Layers(2, 2, &tables),
@@ -83,7 +83,7 @@ fn approximate_segments() {
         let unit = 3.2 / count as f32;
         let look = LookBytes { published: (count, 0.5, unit), ..LookBytes::none() }.bytes();
         let bound = [
-            Bound::Uniform(0, 10, &look),
+            Bound::Storage(0, 10, &look),
             Bound::Storage(0, 11, &widget_bytes(&device)),
             Bound::Uniform(2, 0, &lookup(1.0)),
             Bound::Texture(2, 2, &table),

@@ -264,7 +264,7 @@ fn segments_through_widgets() {
     }
 }
 
-/// The uniform that shaders know a look by.
+/// What shaders know a look by.
 pub(crate) struct LookBytes {
     pub(crate) light: LightUniform,
     pub(crate) turning: Turning,
@@ -318,7 +318,7 @@ fn segments_through_images() {
         let share = 1e-3f32;
         let inputs: Vec<f32> = (0..rows).flat_map(|_| [&random_segment(&mut random)[..], &[share]].concat()).collect();
         let look = LookBytes { image: Some(image.clone()), ..LookBytes::none() }.bytes();
-        let bound = [Bound::Uniform(0, 10, &look), Bound::Storage(0, 12, &texels)];
+        let bound = [Bound::Storage(0, 10, &look), Bound::Storage(0, 12, &texels)];
         let found = run(&source, &bound, &inputs, rows, 5);
         let twin = |row: &[f32]| {
             let (front, back, length) = ends(row);
@@ -351,7 +351,7 @@ fn segments_of_two_fields() {
         let inputs: Vec<f32> = (0..rows).flat_map(|_| random_segment(&mut random)).collect();
         let look = LookBytes { color_pieces: color.len() as u32, ..LookBytes::none() }.bytes();
         let pieces = bytes(&[color.clone(), opacity.clone()].concat());
-        let found = run(&source, &[Bound::Uniform(0, 10, &look), Bound::Storage(0, 1, &pieces)], &inputs, rows, 5);
+        let found = run(&source, &[Bound::Storage(0, 10, &look), Bound::Storage(0, 1, &pieces)], &inputs, rows, 5);
         let twin = |row: &[f32]| {
             let (front, back, length) = ends(row);
             Integrated { color: two_field_f32::integrate(&color, &opacity, front, back, length), pieces: 1 }
@@ -394,7 +394,7 @@ fn light_of_points() {
             })
             .collect();
         let look = LookBytes { light, ..LookBytes::none() }.bytes();
-        let found = run(&source, &[Bound::Uniform(0, 10, &look)], &inputs, rows, 4);
+        let found = run(&source, &[Bound::Storage(0, 10, &look)], &inputs, rows, 4);
         for (row, found) in inputs.chunks_exact(9).zip(found.chunks_exact(4)) {
             let [gradient, eye, color] = [0, 3, 6].map(|k| [row[k], row[k + 1], row[k + 2]]);
             let n = normal(gradient);
@@ -448,7 +448,7 @@ fn lit_segments_of_any_function() {
         let inputs = lit_rows(&mut random, rows);
         let look = LookBytes { light, turning, color_pieces: color.len() as u32, ..LookBytes::none() }.bytes();
         let pieces = bytes(&[color.clone(), opacity.clone()].concat());
-        let found = run(&source, &[Bound::Uniform(0, 10, &look), Bound::Storage(0, 1, &pieces)], &inputs, rows, 5);
+        let found = run(&source, &[Bound::Storage(0, 10, &look), Bound::Storage(0, 1, &pieces)], &inputs, rows, 5);
         let twin = |row: &[f32]| {
             let (gradients, eye) = vectors(row);
             let classified = |from: f32, to: f32, factor: f32| {
@@ -484,13 +484,13 @@ fn lit_segments_that_are_linear_between_nodes() {
         let look = LookBytes { light, turning, ..LookBytes::none() };
         let pieces = transfer_f32::pieces(&function, UNIT[0], 1.0);
         let (uniform, buffer) = (look.bytes(), bytes(&pieces));
-        let found = run(&one, &[Bound::Uniform(0, 10, &uniform), Bound::Storage(0, 1, &buffer)], &inputs, rows, 5);
+        let found = run(&one, &[Bound::Storage(0, 10, &uniform), Bound::Storage(0, 1, &buffer)], &inputs, rows, 5);
         let twin = |row: &[f32]| one_field(&illuminated(row), &pieces, Weights::Direct, row[0], row[2]);
         assert_eq!(difference(&inputs, 14, &found, twin, 2.0 * error), None);
         let [color, opacity] = two_field_f32::axes(&function, UNIT, 1.0);
         let uniform = LookBytes { color_pieces: color.len() as u32, ..look }.bytes();
         let buffer = bytes(&[color.clone(), opacity.clone()].concat());
-        let found = run(&two, &[Bound::Uniform(0, 10, &uniform), Bound::Storage(0, 1, &buffer)], &inputs, rows, 5);
+        let found = run(&two, &[Bound::Storage(0, 10, &uniform), Bound::Storage(0, 1, &buffer)], &inputs, rows, 5);
         let twin = |row: &[f32]| {
             let (front, back, _) = ends(row);
             two_fields(&illuminated(row), &color, &opacity, front, back)

@@ -6,7 +6,8 @@ use tetlux_mesh::Field;
 use tetlux_mesh::procedural::Split;
 
 use super::{EDGES, read};
-use crate::damage::{HOSTILE, config, damages, replace_number};
+use crate::damage::mutation::{HOSTILE, replace_number};
+use crate::damage::{config, damages};
 use crate::source::{Files, Source};
 use crate::{IngestError, MixedMesh};
 

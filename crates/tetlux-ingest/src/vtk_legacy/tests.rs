@@ -4,7 +4,8 @@ use tetlux_mesh::procedural::Split;
 use tetlux_mesh::{Field, Location};
 
 use super::read;
-use crate::damage::{HOSTILE, config, damages, replace_number};
+use crate::damage::mutation::{HOSTILE, replace_number};
+use crate::damage::{config, damages};
 use crate::source::Source;
 use crate::{IngestError, MixedCells, MixedMesh};
 

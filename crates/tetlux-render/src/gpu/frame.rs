@@ -134,8 +134,7 @@ impl<'a> Maker<'a> {
             Binding::Spent => counters(self),
             Binding::Seconds | Binding::Gradients | Binding::Look | Binding::Widgets | Binding::Texels => {
                 let contents = job.look.as_ref().map_or(Vec::new(), |look| look::contents(look, binding));
-                let usage = if binding == Binding::Look { wgpu::BufferUsages::UNIFORM } else { storage };
-                self.filled("look", &contents, usage)
+                self.filled("look", &contents, storage)
             }
             Binding::Attributes => self.filled("attributes of vertices", bytemuck::cast_slice(job.attributes), storage),
         }

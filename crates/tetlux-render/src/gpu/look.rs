@@ -112,7 +112,7 @@ impl LookVariant {
 /// Laid out as the shader's `Look` (shaders/lib/look.wgsl), where its members are explained.
 #[derive(Debug, Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub(crate) struct LookUniform {
+pub(crate) struct LookBlock {
     pub(crate) shares: [f32; 4],
     pub(crate) direction: [f32; 3],
     pub(crate) silhouette: f32,
@@ -130,29 +130,29 @@ pub(crate) struct LookUniform {
     pub(crate) no_data: [f32; 4],
 }
 
-impl LookUniform {
-    fn new(look: &Look) -> LookUniform {
-        let mut uniform = LookUniform {
+impl LookBlock {
+    fn new(look: &Look) -> LookBlock {
+        let mut block = LookBlock {
             errors: [look.color_error, 0.0],
             emission: look.emission,
             no_data: look.no_data,
-            ..LookUniform::default()
+            ..LookBlock::default()
         };
         if let Some(Published::Approximate { pieces, unit, .. }) = look.published {
-            (uniform.pieces, uniform.unit) = (pieces, unit);
+            (block.pieces, block.unit) = (pieces, unit);
         }
         if let Some((light, turning)) = &look.light {
-            (uniform.shares, uniform.direction, uniform.silhouette) = (light.shares, light.direction, light.silhouette);
-            (uniform.errors[1], uniform.slope, uniform.curvature) = (turning.error, turning.slope, turning.curvature);
+            (block.shares, block.direction, block.silhouette) = (light.shares, light.direction, light.silhouette);
+            (block.errors[1], block.slope, block.curvature) = (turning.error, turning.slope, turning.curvature);
         }
         match &look.function {
             Function::OneField(..) | Function::Vertex(_) | Function::Widgets(_) => {}
-            Function::TwoFields([color, _]) => uniform.color_pieces = color.len() as u32,
+            Function::TwoFields([color, _]) => block.color_pieces = color.len() as u32,
             Function::Image(image) => {
-                (uniform.scale, uniform.origin, uniform.size) = (image.scale, image.origin, image.size);
+                (block.scale, block.origin, block.size) = (image.scale, image.origin, image.size);
             }
         }
-        uniform
+        block
     }
 }
 
@@ -192,7 +192,7 @@ pub(super) fn contents(look: &Look, binding: Binding) -> Vec<u8> {
             let rows: Vec<[f32; 4]> = rows.map(|((&x, &y), &z)| [x as f32, y as f32, z as f32, 0.0]).collect();
             bytemuck::cast_slice(&rows).into()
         }
-        (Binding::Look, _) => bytemuck::bytes_of(&LookUniform::new(look)).into(),
+        (Binding::Look, _) => bytemuck::bytes_of(&LookBlock::new(look)).into(),
         (Binding::Widgets, Function::Widgets(widgets)) => {
             let bits = |v: [f32; 4]| v.map(f32::to_bits);
             // One that is not seen if there is none: bindings may not be empty.

@@ -57,17 +57,13 @@ fn a_lost_device_is_an_error_once_and_opened_anew() {
         let renderer = Renderer::new();
         let method = Method { projection, ..Method::default() };
         let before = render(&renderer, &mesh, method).unwrap();
-        let lose = || {
-            let open = renderer.gpu.as_ref().unwrap().open.lock().unwrap().clone();
-            open.unwrap().device.destroy();
-        };
-        lose();
+        renderer.lose_device();
         let error = render(&renderer, &mesh, method).unwrap_err();
         assert!(matches!(error, RenderError::Lost { .. }), "{error:?}");
         assert!(error.to_string().contains("render again") && error.to_string().contains("CPU back end"), "{error}");
         assert_eq!(render(&renderer, &mesh, method).unwrap().image, before.image, "{projection}");
         // With pipelines that were never made before it was lost.
-        lose();
+        renderer.lose_device();
         let other = Method { projection, integrator: Integrator::Average, ..Method::default() };
         assert!(matches!(render(&renderer, &mesh, other), Err(RenderError::Lost { .. })));
         render(&renderer, &mesh, other).unwrap();
@@ -89,6 +85,23 @@ fn what_the_driver_reports_is_an_error() {
     let out = gpu.reported(&open, &wgpu::Error::OutOfMemory { source: "no memory is left".into() });
     assert!(matches!(out, RenderError::OutOfMemory { .. }), "{out:?}");
     assert!(out.to_string().contains("no memory is left") && out.to_string().contains("smaller"), "{out}");
+}
+
+/// It once was told as "Texture with 'picture' label is invalid", which is what follows from it.
+#[test]
+fn no_memory_is_told_before_what_follows_from_it() {
+    let validation = || wgpu::Error::Validation { source: "invalid".into(), description: "invalid".into() };
+    let errors = [validation(), wgpu::Error::OutOfMemory { source: "none left".into() }];
+    assert!(matches!(cause(&errors), Some(wgpu::Error::OutOfMemory { .. })));
+    assert!(matches!(cause(&[validation()]), Some(wgpu::Error::Validation { .. })));
+    assert!(cause(&[]).is_none());
+}
+
+/// A driver made the values of the uniforms that alone decide a branch a part of the shader: it compiled every lit picture's
+/// anew, and kept them all.
+#[test]
+fn a_look_is_no_uniform_and_lit_pictures_share_their_shader() {
+    assert!(variant::Binding::Look.is_storage());
 }
 
 /// Bytes of the largest buffer that a shader may be given: less than half of what the projected cells take together.

@@ -82,7 +82,9 @@ impl Binding {
 
     pub(crate) fn kind(self) -> wgpu::BufferBindingType {
         match self {
-            Binding::View | Binding::Look => wgpu::BufferBindingType::Uniform,
+            // A look is none: Mesa's software driver makes the values of uniforms that alone decide a branch part of the
+            // shader, and compiles that anew for every picture.
+            Binding::View => wgpu::BufferBindingType::Uniform,
             other => wgpu::BufferBindingType::Storage { read_only: other != Binding::Spent },
         }
     }

@@ -194,11 +194,8 @@ fn a_failing_write_leaves_the_table_that_was_there() {
 fn the_manifest_names_each_file_once() {
     let (_folder, store, spec) = stored();
     let metadata = store.read_metadata(&spec).unwrap();
-    let mut manifest = Manifest::read(&store);
-    assert!(manifest.tables.is_empty(), "there is none yet");
-    manifest.insert(&metadata);
-    manifest.insert(&metadata);
-    manifest.write(&store).unwrap();
+    assert!(Manifest::read(&store).tables.is_empty(), "there is none yet");
+    let manifest = Manifest::add(&store, [&metadata, &metadata]).unwrap();
     let read = Manifest::read(&store);
     assert_eq!(read, manifest);
     assert_eq!(read.tables.len(), 1);
@@ -221,6 +218,26 @@ fn the_committed_table_is_what_would_be_built() {
     let measured = measure(&stored.table).unwrap();
     assert!((measured.max / stored.metadata.error.max - 1.0).abs() < 0.01, "{measured:?}");
     assert!(measured.max < 5e-5);
+}
+
+/// Each once read the manifest, added its own table and wrote it: that of the other was lost.
+#[test]
+fn tables_built_at_once_are_all_in_the_manifest() {
+    let (_folder, store, spec) = stored();
+    let metadata = store.read_metadata(&spec).unwrap();
+    let spec = |number: usize| TableSpec { id: format!("q{number}"), ..spec.clone() };
+    std::thread::scope(|scope| {
+        for thread in 0..4 {
+            let (store, metadata, spec) = (&store, &metadata, &spec);
+            scope.spawn(move || {
+                for number in 0..8 {
+                    let metadata = Metadata { spec: spec(8 * thread + number), ..metadata.clone() };
+                    Manifest::add(store, [&metadata]).unwrap();
+                }
+            });
+        }
+    });
+    assert_eq!(Manifest::read(&store).tables.len(), 32);
 }
 
 proptest! {
