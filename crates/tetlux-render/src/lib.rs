@@ -187,12 +187,7 @@ impl Default for Renderer {
 impl Renderer {
     /// Looks for a graphics adapter, hardware before software; opens none.
     pub fn new() -> Renderer {
-        Renderer {
-            gpu: gpu::Gpu::find(),
-            orderer: Mutex::default(),
-            instructions: Instructions::default(),
-            room: tiles::Room::default(),
-        }
+        Renderer { gpu: gpu::Gpu::find(), ..Renderer::without_adapter() }
     }
 
     /// Draws by these vector instructions where the processor draws: to compare them. The best are the default.
@@ -203,7 +198,12 @@ impl Renderer {
 
     /// One that has no adapter, and looks for none: the processor draws.
     pub fn without_adapter() -> Renderer {
-        Renderer { gpu: None, orderer: Mutex::default() }
+        Renderer {
+            gpu: None,
+            orderer: Mutex::default(),
+            instructions: Instructions::default(),
+            room: tiles::Room::default(),
+        }
     }
 
     /// The adapter there is, for the plan.

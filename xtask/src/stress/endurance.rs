@@ -155,7 +155,7 @@ impl Endurance<'_> {
         };
         let scene = self.scene(&input.scene, way, number);
         let plan = Plan::new(&scene, &input.mesh, self.renderer.device())?;
-        let tables = tables::load_or_build(input, &plan)?;
+        let tables = tables::load_or_build(input, &plan, &mut Vec::new())?;
         let frame = self.renderer.render_with(&scene, &self.model, &plan, &tables)?;
         Ok(Drawn { image: frame.image, device_bytes: frame.resources.bytes })
     }

@@ -31,7 +31,7 @@ fn scene(mesh: &TetMesh, method: Method) -> Scene {
 fn restricted(features: wgpu::Features, restrict: impl FnOnce(&mut wgpu::Limits)) -> Renderer {
     let Gpu { adapter, mut limits, .. } = Gpu::find().unwrap();
     restrict(&mut limits);
-    Renderer { gpu: Some(Gpu::new(adapter, features, limits)), ..Renderer::new() }
+    Renderer { gpu: Some(Gpu::new(adapter, features, limits)), ..Renderer::without_adapter() }
 }
 
 fn planned(renderer: &Renderer, mesh: &TetMesh, method: Method) -> (Scene, Plan) {
