@@ -67,7 +67,8 @@ impl Truth {
         let mut moved = vec![0.0_f64; image.pixels().len()];
         let mut at_rim = vec![false; moved.len()];
         let by = BESIDE * f64::from(view.size[0].max(view.size[1]));
-        for by in [[-by, 0.0], [by, 0.0], [0.0, -by], [0.0, by]] {
+        // Aslant: beside a corner of the silhouette a ray moved along either side stays on it.
+        for by in [[-by, -by], [by, -by], [-by, by], [by, by]] {
             let beside = truth::image(input, view, by)?;
             for (i, (a, b)) in image.pixels().iter().zip(beside.pixels()).enumerate() {
                 moved[i] = moved[i].max(difference(a, b));
