@@ -94,6 +94,7 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
         if is_hidden(depth_at(ray, front.distance), at) {
             break;
         }
+        var is_over = false;
         for (var n = 0u; n < march.steps; n++) {
             let apex_name = names.x ^ names.y ^ names.z ^ names.w ^ a.name ^ b.name ^ c.name;
             let apex = corner_of(ray, cell, apex_name);
@@ -127,10 +128,16 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
                 front = back;
             }
             if next == NONE || color.a >= march.opaque || is_hidden(depth_at(ray, front.distance), at) {
+                is_over = true;
                 break;
             }
             cell = next;
             names = names_of(cell);
+        }
+        if !is_over {
+            // No walk takes so many steps: the driver has ended the loop. The host is told.
+            color.a = -1.0;
+            break;
         }
     }
     textureStore(picture, id.xy, color);

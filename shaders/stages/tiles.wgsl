@@ -84,6 +84,9 @@ fn composite(@builtin(workgroup_id) tile: vec3<u32>, @builtin(local_invocation_i
     let index = tile.y * tiling.columns + tile.x;
     let end = starts[index + 1u];
     var position = starts[index];
+    // A pixel whose cells were not all visited: the driver has ended a loop. The host is told.
+    var is_cut = color.a < 0.0;
+    var is_over = false;
     while position < end {
         if lane == 0u {
             atomicStore(&alive, 0u);
@@ -99,11 +102,13 @@ fn composite(@builtin(workgroup_id) tile: vec3<u32>, @builtin(local_invocation_i
             note(lane, tile_cells[position + lane], corner);
         }
         if workgroupUniformLoad(&alive) == 0u {
+            is_over = true;
             break;
         }
         let ordered = min(workgroupUniformLoad(&unordered), count);
         var word = 0u;
         var bits = atomicLoad(&reaching[block * WORDS]);
+        var is_visited = false;
         while color.a < tiling.opaque {
             while bits == 0u && (word + 1u) * 32u < ordered {
                 word++;
@@ -111,11 +116,13 @@ fn composite(@builtin(workgroup_id) tile: vec3<u32>, @builtin(local_invocation_i
             }
             let k = word * 32u + firstTrailingBit(bits);
             if bits == 0u || k >= ordered {
+                is_visited = true;
                 break;
             }
             bits &= bits - 1u;
             color += (1.0 - color.a) * color_through(ready[tile_cells[position + k]].cell, at);
         }
+        is_cut |= !is_visited && color.a < tiling.opaque;
         position += ordered;
         if ordered < count {
             // The rest of the group: cells behind it have ranks beyond its end.
@@ -131,7 +138,8 @@ fn composite(@builtin(workgroup_id) tile: vec3<u32>, @builtin(local_invocation_i
         }
         workgroupBarrier();
     }
+    is_cut |= position < end && !is_over;
     if inside {
-        picture[pixel.y * u32(view.size.x) + pixel.x] = color;
+        picture[pixel.y * u32(view.size.x) + pixel.x] = select(color, vec4<f32>(0.0, 0.0, 0.0, -1.0), is_cut);
     }
 }

@@ -58,6 +58,18 @@ pub enum RenderError {
         /// What the driver said.
         reason: String,
     },
+    /// Rays were left before their end: some drivers end a shader's loops after so many turns (Mesa's software driver after
+    /// 65 535 in all).
+    #[error(
+        "{adapter} ended {rays} rays before they had left the mesh, as drivers do whose loops may take so many turns alone: \
+         draw by projected tetrahedra (projection pt), or use the CPU back end"
+    )]
+    CutShort {
+        /// The adapter's name.
+        adapter: String,
+        /// How many.
+        rays: usize,
+    },
     /// The method looks values up in a table that was not given.
     #[error(
         "the integrator needs the table \"{id}\", which was not given: hand over every table that table_specs names"

@@ -119,7 +119,7 @@ impl Gpu {
             pipelines: Mutex::default(),
             marchers: Mutex::default(),
             tilers: Mutex::default(),
-            room: Room::MOST,
+            room: if info.device_type == wgpu::DeviceType::Cpu { Room::OF_SOFTWARE } else { Room::MOST },
         }
     }
 
@@ -174,17 +174,26 @@ impl Gpu {
             let room = Room::of(&open.device.limits(), &variant, job.size).within(self.room);
             let by_centroid = self.sorts(plan);
             let draw = || tiler.draw(open, radix, &variant, job, by_centroid, room, &self.device.name);
-            return stages.run("draw", || self.checked(open, draw))?.map_err(|error| match error {
+            let drawn = stages.run("draw", || self.checked(open, draw))?.map_err(|error| match error {
                 RenderError::Device { reason, .. } => self.failed(open, reason),
                 error => error,
             });
+            return self.whole(drawn?);
         } else {
             let cells = pipelines(variant, stages)?;
             let groups = if sorted { Some(pipelines(variant.of_groups(), stages)?) } else { None };
             let draw = || frame::draw(open, &variant, &cells, groups.as_deref(), job);
             stages.run("draw", || self.checked(open, draw))?
         };
-        drawn.map_err(|e| self.failed(open, e))
+        self.whole(drawn.map_err(|e| self.failed(open, e))?)
+    }
+
+    /// A picture without rays that the driver has left before their end: shaders give these a negative alpha.
+    fn whole(&self, drawn: Drawn) -> Result<Drawn, RenderError> {
+        match drawn.pixels.iter().filter(|pixel| pixel[3] < 0.0).count() {
+            0 => Ok(drawn),
+            rays => Err(RenderError::CutShort { adapter: self.device.name.clone(), rays }),
+        }
     }
 
     /// Loses the device, if it is open.

@@ -13,6 +13,7 @@ mod extremes;
 mod eye_inside;
 mod grid_rays;
 mod layers;
+mod long_rays;
 mod no_data;
 mod random_scenes;
 mod thin_sheets;

@@ -62,6 +62,9 @@ impl Room {
     /// However much a device has room for.
     pub(super) const MOST: Room = Room { cells: u32::MAX, pairs: MOST_PAIRS };
 
+    /// Of software drivers: Mesa's ends the loops of a shader after 65 535 turns in all, of which a cell takes a few.
+    pub(super) const OF_SOFTWARE: Room = Room { cells: 1 << 14, pairs: MOST_PAIRS };
+
     /// The lesser of both.
     pub(super) fn within(self, other: Room) -> Room {
         Room { cells: self.cells.min(other.cells), pairs: self.pairs.min(other.pairs) }
