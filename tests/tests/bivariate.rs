@@ -508,7 +508,7 @@ fn one_field_takes_nothing_of_this_on_the_device() {
         assert_eq!((resources.pipelines, resources.textures), (2, 1));
         (resources.buffers - plain.buffers, resources)
     };
-    let shared = 2 * 32_768 + 96;
+    let shared = 2 * 32_768 + 112;
     let (buffers, lit) = more(one_field(), "y", light());
     assert_eq!((buffers, lit.bytes), (4, plain.bytes + shared + points * 16), "gradients");
     // Of two fields the second scalar; widgets or texels stand in for the pieces.

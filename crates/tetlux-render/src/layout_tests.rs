@@ -101,6 +101,7 @@ fn the_look() {
         ("emission", offset_of!(LookBlock, emission)),
         ("unit", offset_of!(LookBlock, unit)),
         ("unused", offset_of!(LookBlock, unused)),
+        ("no_data", offset_of!(LookBlock, no_data)),
     ]);
     assert_eq!(layout_in("lib::look", "Look"), (ours, size_of::<LookBlock>()));
 }
