@@ -101,6 +101,7 @@ fn the_look() {
         ("emission", offset_of!(LookUniform, emission)),
         ("unit", offset_of!(LookUniform, unit)),
         ("unused", offset_of!(LookUniform, unused)),
+        ("no_data", offset_of!(LookUniform, no_data)),
     ]);
     assert_eq!(layout_in("lib::look", "Look"), (ours, size_of::<LookUniform>()));
 }

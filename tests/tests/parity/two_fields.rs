@@ -293,7 +293,8 @@ impl LookBytes {
         let [width, height] = image.map_or([0; 2], |i| i.size);
         let (pieces, emission, unit) = self.published;
         let last = [width, height, self.color_pieces, pieces, emission.to_bits(), unit.to_bits(), 0, 0];
-        let words = floats.concat().into_iter().map(f32::to_bits).chain(last);
+        let no_data = [0; 4];
+        let words = floats.concat().into_iter().map(f32::to_bits).chain(last).chain(no_data);
         words.flat_map(u32::to_ne_bytes).collect()
     }
 }
