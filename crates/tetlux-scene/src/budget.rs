@@ -44,10 +44,15 @@ const SCALAR_ROUNDING_CPU: f64 = 2.4e-7;
 /// See [`SCALAR_ROUNDING_CPU`].
 const SCALAR_ROUNDING_GPU: f64 = 2.4e-6;
 /// Where rays enter and leave cells is good to so much of the mesh's diagonal: little, but of a sheet so thin that it is all
-/// of its depth, seen aslant (of sheets 1 to 1e-6 of their width thin and of optical depth 1, doubled).
-const LENGTH_ROUNDING_CPU: f64 = 3e-8;
+/// of its depth, seen aslant (of sheets 1 to 1e-6 of their width thin and of optical depth 1, doubled). On the CPU, which
+/// counts the depths of a thin cell from its own face, that is so of rays alone that pass from cell to cell inside the
+/// sheet, the fewer the thinner it is.
+const LENGTH_ROUNDING_CPU: f64 = 1e-7;
 /// See [`LENGTH_ROUNDING_CPU`].
 const LENGTH_ROUNDING_GPU: f64 = 6e-8;
+/// On the CPU, where lengths leave a larger error than this, the rays that it is of are so few, about one in a thousand,
+/// that it is not stated of all.
+const FEW_RAYS: f64 = 1e-4;
 
 /// The figure of a choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -348,17 +353,28 @@ pub(crate) fn state(scene: &Scene, measures: &Measures, method: &Method, spent: 
     let brightest = lit(scene).max(1.0);
     let gpu = method.backend == Backend::Gpu;
     let lengths = densest(scene) * measures.extent * if gpu { LENGTH_ROUNDING_GPU } else { LENGTH_ROUNDING_CPU };
-    let mut rounding = (of_rounding(method.backend) + lengths.min(1.0)) * brightest;
+    let mut rounding = (of_rounding(method.backend) + lengths.min(if gpu { 1.0 } else { FEW_RAYS })) * brightest;
+    let mut beyond = Vec::new();
+    if !gpu && lengths > FEW_RAYS {
+        let most = lengths.min(1.0) * brightest;
+        beyond.push(format!(
+            "rays that pass from one cell to the next inside a thin, dense sheet, about one pixel in 1 000, may be off by up \
+             to {most:.1e}"
+        ));
+    }
     let wider = || "ask for no less with --max-error".to_string();
     if let Optics::OneField(transfer) = &scene.classification {
         let (steepest, steps) = steepness(transfer, scene.scalar.range, measures.edge);
         rounding += steepest * if gpu { SCALAR_ROUNDING_GPU } else { SCALAR_ROUNDING_CPU };
-        stated.beyond = steps.then(|| {
-            "rays that run along a step of the transfer function, about one pixel in 50 000, may be off by more: give \
-             steps a width"
-                .into()
-        });
+        if steps {
+            beyond.push(
+                "rays that run along a step of the transfer function, about one pixel in 50 000, may be off by more: give \
+                 steps a width"
+                    .into(),
+            );
+        }
     }
+    stated.beyond = (!beyond.is_empty()).then(|| beyond.join("; "));
     let other = if method.backend == Backend::Gpu { "use --backend cpu, which rounds less, or " } else { "" };
     stated.add("rounding", rounding, "by single precision".into(), format!("{other}{}", wider()));
     if spent.hidden > 0.0 {

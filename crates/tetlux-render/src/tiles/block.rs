@@ -24,6 +24,17 @@ fn linear<S: Simd>(simd: S, [dx, dy, c]: [f32; 3], x: S::f32s, y: S::f32s) -> S:
     x.mul_add(dx, y.mul_add(dy, S::f32s::splat(simd, c)))
 }
 
+/// More than any w.
+const BEYOND: f32 = 1e30;
+
+/// What takes the second plane and the third from where rays leave the cell, and from where they enter it, by how many
+/// planes are front faces: 0, or beyond any w.
+const SIDES: [[[f32; 2]; 2]; 8] = {
+    const FRONT: [f32; 2] = [-BEYOND, 0.0];
+    const BACK: [f32; 2] = [0.0, BEYOND];
+    [[BACK; 2], [BACK; 2], [FRONT, BACK], [FRONT; 2], [FRONT; 2], [BACK; 2], [BACK; 2], [BACK; 2]]
+};
+
 /// The parts of rays inside a cell.
 pub(crate) struct Segments<S: Simd> {
     /// The scalar in the middle, less the cell's lowest, and by how much it rises from there to the back end.
@@ -34,6 +45,10 @@ pub(crate) struct Segments<S: Simd> {
     /// The middle's depth from `z_ref` and half the extent in depth, both over `z_ref` in perspective.
     pub(crate) middle: S::f32s,
     pub(crate) half: S::f32s,
+    /// Any scalar in the middle is so much of what it is on the cell's lean less so much of its `along`.
+    pub(crate) shares: [S::f32s; 2],
+    /// 1 + w on the lean.
+    pub(crate) tilt: S::f32s,
 }
 
 /// Where the rays of a block's pixels end, if anything in the volume ends rays.
@@ -45,8 +60,8 @@ pub(crate) struct Ends<S: Simd> {
     pub(crate) origin: f32,
 }
 
-/// w where the rays through some pixels, counted from the middle of the cell's box, enter a cell and leave it: the first
-/// is not above the second where they miss it. `ends` is where they end.
+/// w, counted from the cell's lean, where the rays through some pixels, counted from the middle of its box, enter a cell
+/// and leave it: the first is not above the second where they miss it. `ends` is where they end.
 #[inline(always)]
 pub(crate) fn crossing<S: Simd, const ORTHOGRAPHIC: bool>(
     simd: S,
@@ -60,23 +75,24 @@ pub(crate) fn crossing<S: Simd, const ORTHOGRAPHIC: bool>(
     let s = linear(simd, record.planes[3], x, y);
     // Without branches, which no processor could foretell; and sums where comparisons would do, as units for those are
     // busy with the planes.
-    let [[back_q, front_q], [back_r, front_r]] = record.beyond;
-    let nearest = S::f32s::splat(simd, record.nearest);
+    let [[back_q, front_q], [back_r, front_r]] = SIDES[record.fronts as usize % SIDES.len()];
+    let lean = linear(simd, record.lean, x, y);
+    let nearest = S::f32s::splat(simd, record.nearest) - lean;
     let mut front = p.min(nearest).min((q + front_q).min(r + front_r));
-    let mut back = s.max(0.0).max((q + back_q).max(r + back_r));
+    let mut back = s.max(-lean).max((q + back_q).max(r + back_r));
     if record.fronts == 0 {
         (front, back) = (nearest, back.max(p));
     } else if record.fronts == 4 {
-        (front, back) = (front.min(s), S::f32s::splat(simd, 0.0));
+        (front, back) = (front.min(s), -lean);
     }
     if let Some(Ends { levels, origin }) = ends {
         let before = S::f32s::splat(simd, record.level) - levels;
-        back = back.max(if ORTHOGRAPHIC { before } else { before / (levels + origin) });
+        back = back.max(if ORTHOGRAPHIC { before } else { before / (levels + origin) } - lean);
     }
     (front, back)
 }
 
-/// The segments of rays that enter a cell and leave it at some w ([`crossing`]); `stretch` is the rays' length for a depth
+/// The segments of rays that enter a cell and leave it there ([`crossing`]); `stretch` is the rays' length for a depth
 /// of 1.
 #[inline(always)]
 pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(
@@ -87,24 +103,29 @@ pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(
     (front, back): (S::f32s, S::f32s),
 ) -> Segments<S> {
     // Where the ray misses the cell too, both between the farthest vertex and the nearest.
-    let back = back.min(record.nearest);
+    let lean = linear(simd, record.lean, x, y);
+    let back = back.min(S::f32s::splat(simd, record.nearest) - lean);
     let front = front.max(back);
     let extent = front - back;
-    let scalar = linear(simd, record.scalar, x, y);
+    let (scalar, tilt) = (linear(simd, record.scalar, x, y), lean + 1.0);
     // In perspective all over z_ref, the gradient times it.
-    let (middle, half, gradient) = if ORTHOGRAPHIC {
-        ((front + back) * 0.5, extent * 0.5, S::f32s::splat(simd, record.along))
+    let (middle, half, gradient, shares) = if ORTHOGRAPHIC {
+        let middle = (front + back) * 0.5;
+        let whole = S::f32s::splat(simd, 1.0);
+        (lean + middle, extent * 0.5, S::f32s::splat(simd, record.along), [whole, middle])
     } else {
-        let beyond = back + 1.0;
-        let half = S::f32s::splat(simd, 0.5) / front.mul_add(beyond, beyond);
-        ((front * back).mul_add(2.0, front + back) * half, extent * half, scalar + record.along)
+        let (enter, leave) = (front + tilt, back + tilt);
+        let half = S::f32s::splat(simd, 0.5) / (enter * leave);
+        let shares = [(enter + leave) * half, front.mul_add(leave, back * enter) * half];
+        let (near, far) = (front + lean, back + lean);
+        ((near * far).mul_add(2.0, near + far) * half, extent * half, tilt.mul_add(record.along, scalar), shares)
     };
     // Both ends between the cell's lowest scalar and its highest.
     let rise = gradient * half;
-    let scalar = (-gradient).mul_add(middle, scalar).max(0.0).min(record.range);
+    let scalar = shares[1].mul_add(-record.along, shares[0] * scalar).max(0.0).min(record.range);
     let limit = scalar.min(S::f32s::splat(simd, record.range) - scalar);
     let length = half * stretch * if ORTHOGRAPHIC { 2.0 } else { 2.0 * record.depth };
-    Segments { scalar, rise: rise.min(limit).max(-limit), length, middle, half }
+    Segments { scalar, rise: rise.min(limit).max(-limit), length, middle, half, shares, tilt }
 }
 
 impl<S: Simd> Segments<S> {

@@ -5,14 +5,14 @@ use rayon::prelude::*;
 use tetlux_mesh::Location;
 
 use super::record::{CHUNK, Chunk, Record, at};
-use super::set_up::{STEEPEST, SetUp};
+use super::set_up::{STEEPEST, SetUp, on_plane};
 use crate::device_mesh::NEGATIVE;
 use crate::look::Further;
 
 /// A field in a cell, as [`Record`] has its first.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Linear {
-    /// At depth `z_ref`, less `base`: (d/dx, d/dy, at the middle).
+    /// Less `base`, in perspective times 1 + w, on the cell's lean: (d/dx, d/dy, at the middle).
     at: [f32; 3],
     along: f32,
     /// The cell's lowest value, and its highest less that.
@@ -25,8 +25,10 @@ pub(crate) struct Linear {
 pub(crate) struct Inside {
     /// The pixel, counted from the middle of the cell's box.
     pub(crate) place: [f32; 2],
-    /// The middle's depth from `z_ref` and the extent in depth, both over `z_ref` in perspective.
-    pub(crate) middle: f32,
+    /// Of the middle, as [`Segments`](super::block::Segments) has them.
+    pub(crate) shares: [f32; 2],
+    pub(crate) tilt: f32,
+    /// The extent in depth, over `z_ref` in perspective.
     pub(crate) extent: f32,
 }
 
@@ -35,8 +37,9 @@ impl Linear {
     pub(crate) fn ends(&self, inside: &Inside, orthographic: bool) -> [f32; 2] {
         let [dx, dy, c] = self.at;
         let here = inside.place[0] * dx + inside.place[1] * dy + c;
-        let gradient = if orthographic { self.along } else { here + self.along };
-        let (middle, rise) = (here - gradient * inside.middle, 0.5 * gradient * inside.extent);
+        let gradient = if orthographic { self.along } else { here + self.along * inside.tilt };
+        let [share, aside] = inside.shares;
+        let (middle, rise) = (here * share - self.along * aside, 0.5 * gradient * inside.extent);
         [middle - rise, middle + rise].map(|value| self.base + value.max(0.0).min(self.range))
     }
 }
@@ -88,7 +91,9 @@ fn in_cell(set_up: &SetUp, fields: &[Further], cell: u32, record: &Record, linea
         let here = s[0] + gradient.dot(origin - (frame[0] + eye.offset));
         let along = if eye.orthographic { gradient.z } else { gradient.dot(origin) - here };
         let [x, y, c, along] =
-            [gradient.x * scale, gradient.y * scale, here, along].map(|v| v.clamp(-STEEPEST, STEEPEST) as f32);
-        *linear = Linear { at: [x, y, c], along, base, range: (most - f64::from(base)).max(0.0) as f32 };
+            [gradient.x * scale, gradient.y * scale, here, along].map(|v| v.clamp(-STEEPEST, STEEPEST));
+        let at = on_plane([x, y, c], along, record.lean);
+        let range = (most - f64::from(base)).max(0.0) as f32;
+        *linear = Linear { at, along: along as f32, base, range };
     }
 }

@@ -18,7 +18,8 @@ struct Lanes {
     front: [f32; LANES],
     back: [f32; LANES],
     length: [f32; LANES],
-    middle: [f32; LANES],
+    shares: [[f32; LANES]; 2],
+    tilt: [f32; LANES],
     extent: [f32; LANES],
     /// The pixels, from the middle of the cell's box, and from the picture's.
     place: [[f32; LANES]; 2],
@@ -44,11 +45,14 @@ impl<S: Simd> Walk<'_, S> {
         let mut lanes = Lanes::default();
         let [x, y] = &mut lanes.place;
         let [across, down] = &mut lanes.pixel;
+        let [share, aside] = &mut lanes.shares;
         for (values, to) in [
             (segments.scalar - segments.rise, &mut lanes.front),
             (segments.scalar + segments.rise, &mut lanes.back),
             (segments.length, &mut lanes.length),
-            (segments.middle, &mut lanes.middle),
+            (segments.shares[0], share),
+            (segments.shares[1], aside),
+            (segments.tilt, &mut lanes.tilt),
             (segments.half + segments.half, &mut lanes.extent),
             (places.0, x),
             (places.1, y),
@@ -89,7 +93,8 @@ fn shade_lanes(
             continue;
         }
         let place = lanes.place.map(|axis| axis[i]);
-        let inside = Inside { place, middle: lanes.middle[i], extent: lanes.extent[i] };
+        let shares = lanes.shares.map(|share| share[i]);
+        let inside = Inside { place, shares, tilt: lanes.tilt[i], extent: lanes.extent[i] };
         let first = [lanes.front[i], lanes.back[i]].map(|s| record.base + s);
         let look::Ends { scalars: [front, back], colors: ends, gradients } =
             look.values(first, further.iter().map(|field| field.ends(&inside, orthographic)));

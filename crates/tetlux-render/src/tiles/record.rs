@@ -7,25 +7,33 @@
 //! w = z_ref / z - 1   (perspective)        w = z_ref - z   (orthographic)
 //! ```
 //!
-//! is 0 at that vertex, grows towards the eye, and is small for small cells, so that thin ones keep their thickness in
-//! single precision. The ray is inside between the least w of the front faces and the greatest of the back faces.
+//! is 0 at that vertex, grows towards the eye, and is small for small cells, so that they keep their thickness in single
+//! precision. The ray is inside between the least w of the front faces and the greatest of the back faces.
+//!
+//! Of a thin cell seen aslant that is a small difference of large w. There w is counted from a plane that the cell lies
+//! along, its `lean`, and so is the scalar s, both found in double precision. With the depth d = w - lean beyond it,
+//!
+//! ```text
+//! (1 + w) s = n - along d   (perspective)        s = n - along d   (orthographic)
+//! ```
+//!
+//! where n, the left side on the plane, is linear in the pixel's position too.
 
 /// A cell ready to be drawn. Pixels are counted from the box's middle, where single precision misses by the least.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(128))]
 pub(crate) struct Record {
-    /// (dw/dx, dw/dy, w at the middle) of each face's plane, front faces first.
+    /// (dw/dx, dw/dy, w at the middle) of each face's plane less those of `lean`, front faces first.
     pub(crate) planes: [[f32; 3]; 4],
     /// How many of the planes are front faces.
     pub(crate) fronts: u32,
-    /// What takes the second plane and the third from where rays leave the cell, and from where they enter it: 0, or
-    /// beyond any w.
-    pub(crate) beyond: [[f32; 2]; 2],
+    /// The plane that a thin cell seen aslant lies along; w = 0 for any other.
+    pub(crate) lean: [f32; 3],
     /// w of the nearest vertex, or of the near plane; that of the farthest vertex is 0.
     pub(crate) nearest: f32,
-    /// The scalar at depth `z_ref`, less `base`: (d/dx, d/dy, at the middle).
+    /// The scalar less `base`, in perspective times 1 + w, on `lean`: (d/dx, d/dy, at the middle).
     pub(crate) scalar: [f32; 3],
-    /// Perspective: the scalar's gradient along the ray times `z_ref` is the scalar at `z_ref` plus this.
+    /// Perspective: the scalar's gradient along the ray times `z_ref` is `scalar` plus this times 1 + w, on `lean`.
     /// Orthographic: the gradient along the ray.
     pub(crate) along: f32,
     /// The cell's lowest scalar.

@@ -35,8 +35,13 @@ const EDGE_ON: f64 = 1e-12;
 const NUDGE: [f64; 2] = [5.9e-7, 3.3e-7];
 const NUDGE_SIDE: f64 = 128.0;
 
-/// More than any w.
-const BEYOND: f32 = 1e30;
+/// A cell is thin and seen aslant if no ray is inside for more than this share of its extent in depth: from there on it
+/// matters that w is rounded.
+const THIN: f64 = 0.0625;
+
+/// A plane may be leant on if no w within the cell's box is larger than so many times its extent, nor than this: the
+/// other planes are rounded as it is.
+const LEAN: [f64; 2] = [64.0, 1e4];
 
 /// Coefficients are limited to this value: sums and products with pixel positions stay finite.
 pub(crate) const STEEPEST: f64 = 1e20;
@@ -146,9 +151,11 @@ impl SetUp<'_> {
         // (b-a) x (c-a) of each face: both cells at a face find the same bits.
         let (e1, e2, e3) = (frame[1] - frame[0], frame[2] - frame[0], frame[3] - frame[0]);
         let normals = [(frame[2] - frame[1]).cross(frame[3] - frame[1]), e2.cross(e3), e1.cross(e3), e1.cross(e2)];
-        let mut planes = [[splat(0.0); 4]; 4];
+        let (mut planes, mut seen) = ([[splat(0.0); 4]; 4], splat(0.0));
         for (face, [a, b, c]) in FACES.into_iter().enumerate() {
-            planes[face] = self.plane(simd, normals[face], [eye[a], eye[b], eye[c]], origin, scale);
+            let side;
+            (planes[face], side) = self.plane(simd, normals[face], [eye[a], eye[b], eye[c]], origin, scale);
+            seen += side.max(-side);
         }
         let span = farthest - nearest;
         let nearest = if self.eye.orthographic { span } else { span / nearest }.min(STEEPEST);
@@ -157,7 +164,11 @@ impl SetUp<'_> {
         let [a, b, c, d] = &scalars;
         let s = [load(a) - base, load(b) - base, load(c) - base, load(d) - base];
         let volume = dot(e1, normals[1]);
-        let tiny = volume.max(-volume).simd_le(f64::MIN_POSITIVE);
+        let size = volume.max(-volume);
+        let tiny = size.simd_le(f64::MIN_POSITIVE);
+        // Six volumes over twice the area that is seen is the longest ray; that area is half of all faces'.
+        let longest = size * if self.eye.orthographic { splat(2.0) } else { farthest * 2.0 };
+        let thin = longest.simd_lt(span * seen * THIN).to_bitmask();
         let inverse = splat(1.0) / tiny.select(splat(1.0), volume);
         let [s1, s2, s3] = [(s[1] - s[0]) * inverse, (s[2] - s[0]) * inverse, (s[3] - s[0]) * inverse];
         let sum = normals[1] * s1 - normals[2] * s2 + normals[3] * s3;
@@ -182,32 +193,34 @@ impl SetUp<'_> {
         for (lane, (names, record)) in names.iter().zip(records).enumerate() {
             let other = lane + second;
             let parity = if names[0] & NEGATIVE == 0 { 1.0 } else { -1.0 };
-            let (mut fronts, mut backs) = (0, 4);
+            let (mut fronts, mut backs, mut faces) = (0, 4, [0; 4]);
             for face in 0..4 {
                 let here = if face % 2 == 0 { lane } else { other };
                 let inward = if face % 2 == 0 { -parity } else { parity };
                 let is_front = toward[face / 2][here] * inward > 0.0;
                 backs -= usize::from(!is_front);
-                record.planes[if is_front { fronts } else { backs }] =
-                    [slopes[face][lane], slopes[face][other], heights[face / 2][here]];
+                let place = if is_front { fronts } else { backs };
+                record.planes[place] = [slopes[face][lane], slopes[face][other], heights[face / 2][here]];
+                faces[place] = face;
                 fronts += usize::from(is_front);
             }
             record.fronts = fronts as u32;
-            record.beyond = if fronts >= 2 { [[-BEYOND, 0.0]; 2] } else { [[0.0, BEYOND]; 2] };
-            if fronts == 2 {
-                record.beyond[1] = [0.0, BEYOND];
-            }
+            record.lean = [0.0; 3];
             record.nearest = depths[0][lane];
             record.depth = depths[0][other];
             record.level = depths[1][lane];
             record.along = depths[1][other];
             record.scalar = [scalars[0][lane], scalars[0][other], scalars[1][lane]];
+            if thin >> lane & 1 != 0 {
+                let planes = faces.map(|face| [0, 1, 2].map(|i| planes[face][i][lane]));
+                lean(record, planes, [x[lane], y[lane], at[lane]], along[lane]);
+            }
         }
     }
 
     /// (dw/dx, dw/dy, w at the middle) of the plane through a, b, c with normal n, and +1 if n points away from
-    /// the eye's side, else -1. `origin` is the point at depth `z_ref` on the middle's ray, `scale` the side of a
-    /// pixel there.
+    /// the eye's side, else -1; and how much of n points away, times the plane's depth in perspective. `origin` is the
+    /// point at depth `z_ref` on the middle's ray, `scale` the side of a pixel there.
     #[inline(always)]
     fn plane<S: Simd>(
         &self,
@@ -216,7 +229,7 @@ impl SetUp<'_> {
         [a, b, c]: [Vector<S>; 3],
         origin: Vector<S>,
         scale: S::f64s,
-    ) -> [S::f64s; 4] {
+    ) -> ([S::f64s; 4], S::f64s) {
         let splat = |x: f64| S::f64s::splat(simd, x);
         let (side, size, across) = if self.eye.orthographic {
             (n.z, n.x.max(-n.x) + n.y.max(-n.y), n.x * (origin.x - a.x) + n.y * (origin.y - a.y))
@@ -235,7 +248,7 @@ impl SetUp<'_> {
         let larger = f64::from(self.size[0].max(self.size[1])).max(NUDGE_SIDE);
         let nudge = x * (NUDGE[0] * larger) + y * (NUDGE[1] * larger);
         let at = edge_on.select(across * inverse + nudge, dot(n, origin - a) * inverse);
-        [limited(x), limited(y), limited(at), toward]
+        ([limited(x), limited(y), limited(at), toward], side)
     }
 
     /// Sets the boxes of pixels in which cells may be seen: empty if they hold no pixel's centre. Their middles.
@@ -326,6 +339,31 @@ impl SetUp<'_> {
         }
         [first as u32, last as u32]
     }
+}
+
+/// Has the planes and the scalar of a thin cell counted from the front face or the back face that are the least apart.
+#[cold]
+fn lean(record: &mut Record, planes: [[f64; 3]; 4], scalar: [f64; 3], along: f64) {
+    let half = [0, 1].map(|axis| 0.5 * f64::from(record.end[axis] - record.first[axis]));
+    // The largest value in the box.
+    let reach = |[x, y, at]: [f64; 3]| x.abs() * half[0] + y.abs() * half[1] + at.abs();
+    let less = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let (fronts, backs) = planes.split_at(record.fronts as usize);
+    let pairs = fronts.iter().flat_map(|&front| backs.iter().map(move |&back| [front, back]));
+    let apart = |[front, back]: &[[f64; 3]; 2]| reach(less(*front, *back));
+    let Some([front, back]) = pairs.min_by(|a, b| apart(a).total_cmp(&apart(b))) else { return };
+    let flatter = if reach(front) <= reach(back) { front } else { back };
+    if reach(flatter) <= LEAN[1].min(LEAN[0] * f64::from(record.nearest)) {
+        record.lean = flatter.map(|x| x as f32);
+        record.planes = planes.map(|plane| less(plane, record.lean.map(f64::from)).map(|x| x as f32));
+        record.scalar = on_plane(scalar, along, record.lean);
+    }
+}
+
+/// A scalar on a plane, in perspective times 1 + w: from what it is where w = 0, and `along` the rays ([`Record`]).
+#[inline(always)]
+pub(crate) fn on_plane(scalar: [f64; 3], along: f64, plane: [f32; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|i| (scalar[i] - along * f64::from(plane[i])) as f32)
 }
 
 #[inline(always)]
