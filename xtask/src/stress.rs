@@ -113,4 +113,8 @@ const HEAD: &str = "\
 # Under stress
 
 What is promised to hold, held to it: `cargo xtask stress --write-docs` writes this page, `cargo xtask test` runs its short form.
+
+What must not change a picture (refining a mesh, splitting, scaling, turning, moving or renumbering it, looking from behind)
+is tested on random scenes, `tests/tests/invariances`. That all of these tests find what is wrong is tested by faults planted
+on purpose, `tests/tests/planted.rs`: [CONTRIBUTING.md](../CONTRIBUTING.md#planted-faults) lists them, with what finds each.
 ";

@@ -23,8 +23,8 @@ const DIFFERENT: [usize; 2] = [100, 20];
 const CELLS: usize = 4_000;
 
 /// Bytes that the memory of the process may rise by over the frames after the first third, by the line of best fit: what the
-/// allocator's own disorder makes. A picture lost every frame would make ten times as much.
-const RISE: f64 = 4.0 * 1024.0 * 1024.0;
+/// allocator's own disorder makes. In full a picture lost every frame would make four times as much.
+const RISE: f64 = 16.0 * 1024.0 * 1024.0;
 
 /// What may be changed of a scene: how it is drawn.
 type Way = (&'static str, fn(&mut Method));

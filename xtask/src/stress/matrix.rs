@@ -57,7 +57,7 @@ fn methods(short: bool) -> Vec<&'static Row> {
 const LIMITS: [(&str, &str); 2] = [
     (
         "film",
-        "single precision knows where a ray meets the two sides of a film to 6e-8 of the cell's depth in the view, and what lies \
+        "on a graphics adapter single precision knows where a ray meets the two sides of a film to 6e-8 of the cell's depth in the view, and what lies \
          between them is dense in proportion: an error of about 1e-7 times the width of a cell over the film's thickness",
     ),
     (
