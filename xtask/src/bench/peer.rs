@@ -36,7 +36,7 @@ pub(crate) const VTK: &[Rival] = &[
     Rival { name: "pt", title: "VTK projected tetrahedra", at: [0.0; 2], most_cells: usize::MAX },
     Rival { name: "bunyk-partial", title: "VTK Bunyk, partial pre-integration", at: CORNER, most_cells: usize::MAX },
     Rival { name: "bunyk-linear", title: "VTK Bunyk, linear", at: CORNER, most_cells: usize::MAX },
-    Rival { name: "zsweep-partial", title: "VTK Z sweep, partial pre-integration", at: CORNER, most_cells: 50_000 },
+    Rival { name: "zsweep-partial", title: "VTK Z sweep, partial pre-integration", at: CORNER, most_cells: 20_000 },
 ];
 
 /// Its ray casters sample the lower left corner of a pixel.
