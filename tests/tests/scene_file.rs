@@ -383,7 +383,7 @@ fn cells_without_data_look_as_the_scene_says_or_else_the_preset() {
     assert_eq!(no_data(of_preset, green).unwrap(), look([0.0, 1.0, 0.0], 0.75));
     assert_eq!(no_data(&format!("{of_preset}nan_opacity = 0.0"), green).unwrap(), look([0.0, 1.0, 0.0], 0.0));
     let bad = no_data(of_preset, r#", "NanColor": [0, -1, 0]"#).unwrap_err().to_string();
-    assert_says(&bad, &["scene.toml", "cells without data", "-1", "at least 0"]);
+    assert_says(&bad, &["preset.json", "cells without data", "-1", "at least 0"]);
     assert_says(&error(&format!("{TRANSFER}nan_color = [0.0, -1.0, 0.0]")), &["a.toml:4:", "nan_color", "at least 0"]);
     assert_says(&error(&format!("{TRANSFER}nan_opacity = inf")), &["a.toml:4:", "nan_opacity", "inf"]);
     assert_says(&error(&format!("{TRANSFER}nan_opacity = \"clear\"")), &["a.toml:4:"]);

@@ -307,7 +307,12 @@ impl SceneFile {
         };
         let color = self.nan_color.or(color).unwrap_or(NoData::LUMINANCE);
         let opacity = self.nan_opacity.or(opacity).unwrap_or(0.0);
-        NoData::new(color, opacity).map_err(|source| SceneError::NoData { path: self.name.clone(), source })
+        // What the scene itself says has been checked: what is wrong is the preset's.
+        let path = match &self.transfer {
+            TransferSource::Preset { path, .. } => path.display().to_string(),
+            _ => self.name.clone(),
+        };
+        NoData::new(color, opacity).map_err(|source| SceneError::NoData { path, source })
     }
 
     fn camera(&self, mesh: &TetMesh, number: usize) -> Result<Camera, SceneError> {
