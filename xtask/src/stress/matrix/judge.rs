@@ -16,9 +16,6 @@ const THIN: f32 = 1e-2;
 /// Where moving it so far changes the truth by more than is promised, the pixel's centre is on an edge, and which side is
 /// seen says nothing of a method.
 pub(super) const BESIDE: f64 = 1e-6;
-/// How long a ray is inside is known to so small a share of the way through the mesh: what is lit by less, of the picture's
-/// brightest, may be lit or not.
-const SPECK: f64 = 1e-6;
 /// What rounding leaves of nothing in the truth.
 const NOTHING: f32 = 1e-14;
 
@@ -94,8 +91,6 @@ impl Truth {
         if size(image) != size(&self.image) {
             return Verdict { max: f64::INFINITY, coverage: self.moved.len(), ..Verdict::default() };
         }
-        let brightest = self.image.pixels().iter().flatten().copied().fold(0.0, f32::max);
-        let speck = SPECK * f64::from(brightest);
         let mut verdict = Verdict::default();
         for (i, (found, right)) in image.pixels().iter().zip(self.image.pixels()).enumerate() {
             if found.iter().any(|c| !c.is_finite()) {
@@ -103,12 +98,11 @@ impl Truth {
                 continue;
             }
             let is_lit = found.iter().any(|&c| c != 0.0);
-            let error = difference(found, right);
-            let is_fault = lit(right).is_some_and(|lit| lit != is_lit) && error > speck;
-            verdict.coverage += usize::from(is_fault && !self.at_rim[i]);
+            verdict.coverage += usize::from(lit(right).is_some_and(|lit| lit != is_lit) && !self.at_rim[i]);
             if self.moved[i] > CLEAN {
                 continue;
             }
+            let error = difference(found, right);
             if error > verdict.max {
                 verdict.max = error;
                 let width = self.image.width() as usize;
@@ -184,12 +178,11 @@ mod tests {
             let verdict = judged(|p| p[3][1] = bad);
             assert!(verdict.not_finite == 1 && !verdict.is_clean(), "{verdict:?}");
         }
-        // Lost, and lit where nothing is: of a brightest of 0.5.
-        for (pixel, value) in [(1, 0.0), (2, 0.0), (0, 1e-6)] {
+        // Lost, and lit where nothing is: by however little.
+        for (pixel, value) in [(1, 0.0), (2, 0.0), (0, 1e-30)] {
             let verdict = judged(|p| p[pixel] = [value; 4]);
             assert!(verdict.coverage == 1 && !verdict.is_clean(), "{verdict:?}");
         }
-        assert!(judged(|p| p[0] = [4e-7; 4]).is_clean(), "a speck");
         // What rounding of the truth has lit may be so or not.
         assert_eq!([lit(&[0.0; 4]), lit(&[0.0, 0.0, 0.0, 1e-15]), lit(&[1e-12; 4])], [Some(false), None, Some(true)]);
         // Of another size.

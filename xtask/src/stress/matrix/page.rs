@@ -42,7 +42,7 @@ pub(super) fn markdown(lines: &[Line], methods: &[&Row]) -> String {
         "Every picture against an f64 ray caster that shares no formula with what it judges. Pixels whose truth changes by more \
          than {CLEAN:.0e} where the ray is moved by {BESIDE:.0e} of the picture's side are edges and not judged. Promised of ours: no error above \
          {CLEAN:.0e}, neither absolute nor, where alpha is below 0.01, relative to alpha; no coverage fault (a pixel lit where \
-         nothing is, or dark where something is, by more than a millionth of the picture's brightest). Promised of every method: no value that is infinite or not a number. What \
+         nothing is, or dark where something is). Promised of every method: no value that is infinite or not a number. What \
          follows an error in a cell: `c3` three coverage faults, `n3` three pixels not finite, **bold** a promise broken; `r` \
          stands where a method refuses the case with a reason, which is said below.\n\n"
     );
