@@ -36,7 +36,7 @@ pub(crate) fn read(source: &Source, time: Option<usize>) -> Result<MixedMesh, In
 
 fn points(source: &Source, file: &File) -> Result<Vec<DVec3>, IngestError> {
     let Some(dimensions) = file.dimension("num_dim") else {
-        let remedy = "Exodus II is the only kind of netCDF file that is read";
+        let remedy = "of netCDF and HDF5 files Exodus II alone is read: save others (VTKHDF, CGNS) as .vtu, in ParaView by Save Data";
         return Err(source.malformed(Place::File, "Exodus II's dimension num_dim", "none", remedy));
     };
     if dimensions != 3 {
