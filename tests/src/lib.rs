@@ -34,7 +34,7 @@ use tetlux_scene::{Backend, Camera, CellProjection, Method, Order, Plan, Project
 
 pub use closed_form::{Convex, Judged, composite, depth_of, judge};
 pub use random::Random;
-pub use random_scene::{Recipe, random_camera, random_parts, range_of, sensitivity};
+pub use random_scene::{Recipe, random_camera, random_field, random_parts, range_of, sensitivity};
 
 /// A back end and an order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -36,7 +36,7 @@ impl Recipe {
     /// A grid displaced at random, surface included, with a smooth scalar; a transfer function with steps and peaks.
     pub fn random(seed: u64, side: u32) -> Recipe {
         let mut random = Random::new(seed);
-        let parts = random_parts(&mut random);
+        let parts = random_parts(&mut random, 1);
         let field = random_field(&mut random, &parts);
         let range = range_of(&field);
         let classification = Classification::OneField(random_transfer(&mut random, range));
@@ -102,9 +102,10 @@ pub fn range_of(field: &Field) -> [f64; 2] {
     field.values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &s| [low.min(s), high.max(s)])
 }
 
-/// A grid displaced at random, surface included, within a few units of the origin.
-pub fn random_parts(random: &mut Random) -> Parts {
-    let counts = [0; 3].map(|_| 1 + random.below(4));
+/// A grid displaced at random, surface included, within a few units of the origin, of so many hexahedra along each axis at
+/// the least and three more at the most.
+pub fn random_parts(random: &mut Random, least: usize) -> Parts {
+    let counts = [0; 3].map(|_| least + random.below(4));
     let corner = DVec3::new(random.between(0.5, 2.0), random.between(0.5, 2.0), random.between(0.5, 2.0));
     let split = if random.below(2) == 0 { Split::Five } else { Split::Six };
     let mut parts = cuboid(counts, split, [-corner, corner]);
@@ -119,7 +120,7 @@ pub fn random_parts(random: &mut Random) -> Parts {
 }
 
 /// A smooth scalar at the points.
-fn random_field(random: &mut Random, parts: &Parts) -> Field {
+pub fn random_field(random: &mut Random, parts: &Parts) -> Field {
     let wave = DVec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
     Field::point(FIELD, 1, parts.sample(|p| wave.dot(p).sin() + 0.3 * p.z))
 }

@@ -338,6 +338,8 @@ fn metadata() -> Value {
 /// Paths of the files that are in the repository or would be added to it, with slashes, relative to the root.
 fn files() -> BTreeSet<String> {
     let output = Command::new("git")
+        // Whoever owns the clone, as where it is made by another user than the one who tests.
+        .args(["-c", "safe.directory=*"])
         .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
         .current_dir(root())
         .output()

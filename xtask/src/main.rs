@@ -76,6 +76,8 @@ enum Command {
     Stress(stress::Args),
     #[command(hide = true)]
     StressCases(stress::CasesArgs),
+    #[command(hide = true)]
+    StressNoMemory,
     /// Run format, lints, all tests and the documentation; installs a Vulkan driver on Debian if there is none
     Test,
 }
@@ -94,6 +96,7 @@ fn main() -> ExitCode {
         Command::Bench(args) => bench::run(&args).map(|()| true),
         Command::Stress(args) => stress::run(&args),
         Command::StressCases(args) => stress::run_cases(&args).map(|()| true),
+        Command::StressNoMemory => stress::run_without_memory().map(|()| true),
         Command::Test => test::run().map(|()| true),
     };
     match result {

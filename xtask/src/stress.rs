@@ -18,6 +18,7 @@ use tetlux_render::Renderer;
 
 use crate::machine::Machine;
 use crate::report::{create_folder, write_json};
+pub(crate) use faults::run_without_memory;
 pub(crate) use hostile::worker::{Args as CasesArgs, run as run_cases};
 use section::Section;
 

@@ -22,8 +22,12 @@ const SETTLED: i64 = 2;
 
 /// What the file system says of a file's last change; `None` if it cannot be relied on.
 pub(crate) fn stamp(path: &Path) -> Option<[i64; 6]> {
-    let stamp = raw_stamp(&fs::metadata(path).ok()?)?;
     let now = SystemTime::now().duration_since(UNIX_EPOCH).ok()?.as_secs() as i64;
+    settled(raw_stamp(&fs::metadata(path).ok()?)?, now)
+}
+
+/// A stamp, if at a time in seconds no later change can have the same.
+fn settled(stamp: [i64; 6], now: i64) -> Option<[i64; 6]> {
     // The places of the two times, in seconds.
     [stamp[0], stamp[2]].iter().all(|&time| time <= now - SETTLED).then_some(stamp)
 }

@@ -62,7 +62,7 @@ fn sample_error(error: impl std::fmt::Display) -> RenderError {
 }
 
 /// A cube of fog in two colours, as thin as volumes are, that fills a picture.
-fn sample(projection: CellProjection, cubes: usize, side: u32) -> Result<(TetMesh, Scene), RenderError> {
+pub(crate) fn sample(projection: CellProjection, cubes: usize, side: u32) -> Result<(TetMesh, Scene), RenderError> {
     let parts = cuboid([cubes; 3], Split::Six, [-DVec3::ONE, DVec3::ONE]);
     let field = Field::point("s", 1, parts.sample(|p| (3.0 * p.x).sin() + p.y * p.z));
     let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![field]).map_err(sample_error)?;

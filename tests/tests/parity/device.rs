@@ -30,11 +30,24 @@ pub(crate) enum Bound<'a> {
     Layers(u32, u32, &'a [Table]),
 }
 
-/// Runs `source` on rows of numbers: it sees `var<storage, read> inputs: array<u32>` (group 3, binding 0) and writes
-/// `var<storage, read_write> outputs: array<u32>` (group 3, binding 1), `width` a row; entry point `main`, workgroups
-/// of 64 rows.
+/// What a test's shader is run by.
+const ROWS: &str = "
+@group(3) @binding(0) var<storage, read> inputs: array<u32>;
+@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < ROWS {
+        row(id.x);
+    }
+}
+";
+
+/// Runs `source` on rows of numbers: its function `row(i: u32)` sees row i of `inputs`, and writes that of `outputs`, both
+/// arrays of `u32`; `width` numbers a row are written.
 pub(crate) fn run(source: &str, bound: &[Bound], inputs: &[f32], rows: usize, width: usize) -> Vec<f32> {
     let (device, queue) = device();
+    let source = source.to_owned() + &ROWS.replace("ROWS", &format!("{rows}u"));
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
         source: wgpu::ShaderSource::Wgsl(source.into()),

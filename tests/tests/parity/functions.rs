@@ -61,15 +61,7 @@ pub(crate) fn any_number(random: &mut Random) -> f32 {
 const ROWS: usize = 1_000_000;
 
 const SEGMENT_TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if 2u * i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     let a = bitcast<f32>(inputs[2u * i]);
     let b = bitcast<f32>(inputs[2u * i + 1u]);
     let direct = weights_direct(a, b);
@@ -120,15 +112,7 @@ fn segment_weights() {
 
 /// Three numbers of two: `FUNCTION` stands for the function's name.
 pub(crate) const THREE_TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if 2u * i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     let result = FUNCTION(bitcast<f32>(inputs[2u * i]), bitcast<f32>(inputs[2u * i + 1u]));
     for (var k = 0u; k < 3u; k++) {
         outputs[3u * i + k] = bitcast<u32>(result[k]);
@@ -178,15 +162,7 @@ fn published_weights_are_finite_and_alike_where_they_are_stable() {
 }
 
 const INTEGRATE_TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if 5u * i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     let range = vec2<u32>(inputs[5u * i], inputs[5u * i + 1u]);
     let s_front = bitcast<f32>(inputs[5u * i + 2u]);
     let s_back = bitcast<f32>(inputs[5u * i + 3u]);
@@ -263,15 +239,7 @@ fn whole_segments() {
 }
 
 const VERTEX_TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if 9u * i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     var segment: Segment;
     for (var k = 0u; k < 4u; k++) {
         segment.front[k] = bitcast<f32>(inputs[9u * i + k]);
@@ -325,15 +293,12 @@ fn a_planted_difference_is_seen() {
 }
 
 const NO_DATA_TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<vec4<u32>>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = 5u * id.x;
-    if i < arrayLength(&inputs) {
-        let row = vec4<u32>(inputs[i], inputs[i + 1u], inputs[i + 2u], inputs[i + 3u]);
-        outputs[id.x] = bitcast<vec4<u32>>(shade_no_data(bitcast<vec4<f32>>(row), bitcast<f32>(inputs[i + 4u])));
+fn row(i: u32) {
+    let at = 5u * i;
+    let segment = bitcast<vec4<f32>>(vec4<u32>(inputs[at], inputs[at + 1u], inputs[at + 2u], inputs[at + 3u]));
+    let shaded = shade_no_data(segment, bitcast<f32>(inputs[at + 4u]));
+    for (var k = 0u; k < 4u; k++) {
+        outputs[4u * i + k] = bitcast<u32>(shaded[k]);
     }
 }
 ";
@@ -356,16 +321,9 @@ fn segments_without_data() {
 }
 
 const SHARE_TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = 3u * id.x;
-    if i < arrayLength(&inputs) {
-        let ends = bitcast<vec2<f32>>(vec2<u32>(inputs[i + 1u], inputs[i + 2u]));
-        outputs[id.x] = bitcast<u32>(share_before(bitcast<f32>(inputs[i]), ends));
-    }
+fn row(i: u32) {
+    let ends = bitcast<vec2<f32>>(vec2<u32>(inputs[3u * i + 1u], inputs[3u * i + 2u]));
+    outputs[i] = bitcast<u32>(share_before(bitcast<f32>(inputs[3u * i]), ends));
 }
 ";
 

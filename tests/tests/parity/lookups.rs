@@ -63,15 +63,7 @@ fn table_of_half(table: &Table) -> Table {
 
 /// Four numbers of three.
 const FOUR_TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if 3u * i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     let a = bitcast<f32>(inputs[3u * i]);
     let result = FUNCTION(a, bitcast<f32>(inputs[3u * i + 1u]), bitcast<f32>(inputs[3u * i + 2u]));
     for (var k = 0u; k < 4u; k++) {
@@ -154,15 +146,7 @@ fn pre_integrated_segments() {
 }
 
 const CLIP_TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if 5u * i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     let s_front = bitcast<f32>(inputs[5u * i + 2u]);
     let s_back = bitcast<f32>(inputs[5u * i + 3u]);
     let length = bitcast<f32>(inputs[5u * i + 4u]);
@@ -207,15 +191,7 @@ fn a_segment_clipped_to_each_piece_is_whole() {
 }
 
 const DITHER_TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     let random = noise(vec2<u32>(i % 97u, i / 97u), 1000u + i % 13u);
     outputs[2u * i] = bitcast<u32>(random);
     outputs[2u * i + 1u] = bitcast<u32>(dithered(bitcast<f32>(inputs[i]), random));

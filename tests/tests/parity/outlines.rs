@@ -6,19 +6,11 @@ use tetlux_tests::Random;
 use crate::device::run;
 
 const TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
 fn number(i: u32, k: u32) -> f32 {
     return bitcast<f32>(inputs[12u * i + k]);
 }
 
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if 12u * i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     var corners: array<vec2<f32>, 4>;
     for (var k = 0u; k < 4u; k++) {
         corners[k] = vec2<f32>(number(i, 2u * k), number(i, 2u * k + 1u));

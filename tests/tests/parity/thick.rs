@@ -12,15 +12,7 @@ const PIXEL: f32 = 1.0 / 1024.0;
 const NEAR: f32 = 0.5;
 
 const TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if 16u * i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     var c: Corners;
     c.parity = 1.0;
     for (var k = 0u; k < 4u; k++) {

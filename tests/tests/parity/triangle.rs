@@ -7,19 +7,11 @@ use tetlux_tests::Random;
 use crate::device::run;
 
 const TEST: &str = "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
 fn place_at(i: u32) -> vec2<f32> {
     return bitcast<vec2<f32>>(vec2<u32>(inputs[i], inputs[i + 1u]));
 }
 
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if 8u * i >= arrayLength(&inputs) {
-        return;
-    }
+fn row(i: u32) {
     let shares = shares_of(place_at(8u * i), place_at(8u * i + 2u), place_at(8u * i + 4u), place_at(8u * i + 6u));
     for (var k = 0u; k < 3u; k++) {
         outputs[3u * i + k] = bitcast<u32>(shares[k]);

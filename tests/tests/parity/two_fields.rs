@@ -34,15 +34,7 @@ pub(crate) const UNIT: [[f64; 2]; 2] = [[0.0, 1.0]; 2];
 pub(crate) fn main_of(width: usize, results: usize, body: &str) -> String {
     format!(
         "
-@group(3) @binding(0) var<storage, read> inputs: array<u32>;
-@group(3) @binding(1) var<storage, read_write> outputs: array<u32>;
-
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
-    let i = id.x;
-    if {width}u * i >= arrayLength(&inputs) {{
-        return;
-    }}
+fn row(i: u32) {{
     var x: array<f32, {width}>;
     for (var k = 0u; k < {width}u; k++) {{
         x[k] = bitcast<f32>(inputs[{width}u * i + k]);

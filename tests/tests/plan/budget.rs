@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 use tetlux_mesh::TetMesh;
-use tetlux_mesh::procedural::{Split, cuboid};
 use tetlux_optics::TransferFunction;
 use tetlux_scene::{Backend, Integrator, Method, Order, Plan, Scene};
 use tetlux_tests::{
-    FIELD, Random, largest_error, mesh_of, orthographic, perspective, pixel_error, reference, renderer, scene, transfer,
+    FIELD, Random, largest_error, mesh_with, orthographic, perspective, pixel_error, random_field, random_parts,
+    reference, renderer, scene, transfer,
 };
 
 use super::planned;
@@ -15,17 +15,9 @@ const CASES: u64 = 50;
 
 /// A displaced grid with a smooth field.
 fn random_mesh(random: &mut Random) -> TetMesh {
-    let counts = [0; 3].map(|_| 2 + random.below(4));
-    let corner = DVec3::new(random.between(0.5, 2.0), random.between(0.5, 2.0), random.between(0.5, 2.0));
-    let split = if random.below(2) == 0 { Split::Five } else { Split::Six };
-    let mut parts = cuboid(counts, split, [-corner, corner]);
-    for p in &mut parts.points {
-        for axis in 0..3 {
-            p[axis] += 2.0 * corner[axis] / counts[axis] as f64 * random.between(-0.125, 0.125);
-        }
-    }
-    let wave = DVec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
-    mesh_of(&parts, |p| wave.dot(p).sin() + 0.3 * p.z)
+    let parts = random_parts(random, 2);
+    let field = random_field(random, &parts);
+    mesh_with(&parts, field)
 }
 
 /// Without steps: ramps and peaks of a twentieth of the range and more, few colours or a fine scale of them.

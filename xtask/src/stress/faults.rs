@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use super::Stress;
 use super::section::Section;
+pub(crate) use device::run_without_memory;
 
 /// A kind of fault.
 #[derive(Serialize)]

@@ -1,5 +1,7 @@
 use std::ffi::OsString;
+use std::fs::File;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use super::folder::user_folder;
 use super::read_cached::READERS;
@@ -22,12 +24,20 @@ fn the_users_folder_is_named_or_the_platforms() {
     }
 }
 
-/// A stamp is relied on only where a later change cannot have the same.
+/// A stamp is relied on only where a later change cannot have the same, by the clock of whoever asks.
 #[test]
 fn a_file_just_written_has_no_stamp() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("new");
     fs::write(&path, "x").unwrap();
+    let written = raw_stamp(&fs::metadata(&path).unwrap()).unwrap();
+    let last = written[0].max(written[2]);
+    for (now, expected) in [(last - 1, None), (last, None), (last + 1, None), (last + 2, Some(written))] {
+        assert_eq!(settled(written, now), expected, "{} s after it was written", now - last);
+    }
+    // Changed in what is to come, whatever the clock says: as by a machine whose clock is ahead.
+    let ahead = SystemTime::now() + Duration::from_secs(86_400);
+    File::options().write(true).open(&path).unwrap().set_modified(ahead).unwrap();
     assert_eq!(stamp(&path), None);
     assert_eq!(stamp(&folder.path().join("none")), None);
 }

@@ -1,15 +1,16 @@
 //! A graphics device that is lost, or asked for more than it has.
 
-use std::process::Command;
+use std::process::{Command, ExitStatus};
 use std::time::Instant;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail, ensure};
 use tetlux_image::Image;
 use tetlux_render::{Frame, Model, RenderError, Renderer};
 use tetlux_scene::{Backend, CellProjection, Plan, Scene};
 
 use super::super::Stress;
 use super::Row;
+use super::program::{Program, run, succeeded};
 use crate::input::{Input, SceneArgs};
 use crate::memory;
 
@@ -54,7 +55,7 @@ pub(super) fn rows(stress: &Stress) -> Result<Vec<Row>> {
     }
     let input = SceneArgs { grid: Some(GRID), ..SceneArgs::default() }.load(None)?;
     let scenery = Scenery { renderer: stress.renderer, input };
-    Ok(vec![lost(&scenery, LOSSES[usize::from(stress.short)])?, too_large(&scenery)?, no_memory(&scenery)?])
+    Ok(vec![lost(&scenery, LOSSES[usize::from(stress.short)])?, too_large(&scenery)?, no_memory()?])
 }
 
 /// The device goes at a moment between the beginning of a picture and a little after its end.
@@ -131,32 +132,69 @@ fn too_large(scenery: &Scenery) -> Result<Row> {
     Ok(row)
 }
 
-/// The memory that is left is less than a picture takes; so it is on the device, where that is the processor.
-fn no_memory(scenery: &Scenery) -> Result<Row> {
-    let mut row = Row::new("no memory for a picture on the device");
+/// The memory that is left is less than a picture takes; so it is on the device, where that is the processor. In a process
+/// of its own, for some drivers do not ask whether they were given what they write to: no code but theirs can end it so.
+fn no_memory() -> Result<Row> {
+    let mut row = Row::new(NO_MEMORY);
+    let output = run(Program::new()?.command(&["stress-no-memory"])).map_err(anyhow::Error::msg)?;
+    let said = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+    if is_the_driver_s(output.status) {
+        row.outcome = format!("the driver itself wrote to memory that it was not given: {}", output.status);
+        return Ok(row);
+    }
+    // What was not tried is said, and does not count.
+    if said != HELD && output.status.success() {
+        return Ok(Row { outcome: said, ..row });
+    }
+    row.add(succeeded(&output));
+    row.outcome = HELD.into();
+    Ok(row)
+}
+
+const NO_MEMORY: &str = "no memory for a picture on the device";
+const HELD: &str = "an error that says so; the renderer then draws as before";
+
+/// Whether a process was ended for what it did with memory (SIGSEGV, SIGBUS): safe code cannot.
+fn is_the_driver_s(status: ExitStatus) -> bool {
+    #[cfg(unix)]
+    {
+        std::os::unix::process::ExitStatusExt::signal(&status).is_some_and(|signal| matches!(signal, 7 | 10 | 11))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = status;
+        false
+    }
+}
+
+/// Asks for a picture of more memory than is left to this process, and says what came of it.
+pub(crate) fn run_without_memory() -> Result<()> {
+    let renderer = Renderer::new();
+    let scenery =
+        Scenery { renderer: &renderer, input: SceneArgs { grid: Some(GRID), ..SceneArgs::default() }.load(None)? };
     let model = Model::new(&scenery.input.mesh);
     let small = scenery.scene(CellProjection::Pt, [64, 48]);
     let before = scenery.render(&small, &model)??.image;
-    let software = scenery.renderer.device().is_some_and(|device| device.software);
+    let software = renderer.device().is_some_and(|device| device.software);
     let Some(taken) = memory::address_space().filter(|_| software) else {
-        row.outcome = "not tried: the device has memory of its own".into();
-        return Ok(row);
+        say!("not tried: the device has memory of its own");
+        return Ok(());
     };
     if !limit_address_space(&(taken + SPARE).to_string()) {
-        row.outcome = "not tried: the system has no prlimit".into();
-        return Ok(row);
+        say!("not tried: the system has no prlimit");
+        return Ok(());
     }
     let drawn = scenery.render(&scenery.scene(CellProjection::Pt, LARGE), &model);
-    anyhow::ensure!(limit_address_space("unlimited"), "the limit of memory cannot be lifted again");
-    let held = match drawn? {
-        Err(RenderError::OutOfMemory { .. } | RenderError::Lost { .. }) => Ok(()),
-        Err(error) => Err(format!("another error than of memory: {error}")),
-        Ok(_) => Err("it was drawn".into()),
-    };
-    let again = scenery.render(&small, &model)?.map_err(|error| format!("the next picture: {error}"));
-    row.add(held.and(again.and_then(|frame| same(&frame.image, &before))));
-    row.outcome = "an error that says so; the renderer then draws as before".into();
-    Ok(row)
+    ensure!(limit_address_space("unlimited"), "the limit of memory cannot be lifted again");
+    match drawn? {
+        Err(RenderError::OutOfMemory { .. } | RenderError::Lost { .. }) => {}
+        Err(error) => bail!("another error than of memory: {error}"),
+        Ok(_) => bail!("it was drawn"),
+    }
+    let again = scenery.render(&small, &model)?.context("the next picture")?;
+    same(&again.image, &before).map_err(anyhow::Error::msg)?;
+    say!("{HELD}");
+    Ok(())
 }
 
 /// Limits what this process may take, its soft limit alone; false if the system cannot.
@@ -168,6 +206,16 @@ fn limit_address_space(bytes: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_driver_s_end_is_told_from_an_error_s_and_a_panic_s() {
+        let ended = |by: &str| Command::new("sh").args(["-c", by]).status().unwrap();
+        assert!(is_the_driver_s(ended("kill -SEGV $$")));
+        for other in ["exit 0", "exit 2", "exit 101", "kill -ABRT $$", "kill -KILL $$"] {
+            assert!(!is_the_driver_s(ended(other)), "{other}");
+        }
+    }
 
     #[test]
     fn another_picture_is_told_from_the_same() {

@@ -1,13 +1,11 @@
 //! Runs of cells, and devices with little room.
 
 use glam::DVec3;
-use tetlux_mesh::procedural::{Split, cuboid};
-use tetlux_mesh::{Component, Field, TetMesh};
-use tetlux_optics::Classification;
-use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
-use tetlux_scene::{Backend, Camera, CellProjection, Method, Order, Plan, Projection, Scene};
+use tetlux_mesh::TetMesh;
+use tetlux_scene::{Camera, CellProjection, Order, Plan, Projection, Scene};
 
 use super::*;
+use crate::calibration::sample;
 use crate::{Frame, Model, Renderer};
 
 #[test]
@@ -45,34 +43,11 @@ fn small(cells: u32, pairs: u32) -> Renderer {
 
 /// 162 cells, each over many of 400 tiles.
 fn block() -> (TetMesh, Scene) {
-    let parts = cuboid([3, 3, 3], Split::Six, [-DVec3::ONE, DVec3::ONE]);
-    let field = Field::point("s", 1, parts.sample(|p| (2.0 * p.x).sin() + p.y * p.z));
-    let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![field]).unwrap();
-    let node = |s, rgb| ColorNode { s, rgb };
-    let colors = vec![node(-1.0, [0.9, 0.1, 0.2]), node(0.3, [0.2, 0.8, 0.3]), node(1.5, [1.0, 0.9, 0.2])];
-    let opacity = [[-1.0, 1.0], [-0.5, 0.1], [0.2, 0.5], [0.9, 2.0]].map(|[s, opacity]| OpacityNode { s, opacity });
-    let transfer = TransferFunction::new(colors, opacity.to_vec()).unwrap();
-    let scene = Scene {
-        scalar: mesh.scalar("s", Component::Magnitude).unwrap(),
-        second: None,
-        no_data: tetlux_optics::NoData::default(),
-        classification: Classification::OneField(transfer),
-        lighting: None,
-        emphasis: None,
-        surfaces: Vec::new(),
-        unit_distance: 1.0,
-        camera: Camera {
-            position: DVec3::new(2.5, -3.0, 1.8),
-            focal_point: DVec3::ZERO,
-            view_up: DVec3::Z,
-            projection: Projection::Perspective { view_angle: 42.0 },
-            near: 0.0,
-        },
-        size: [320, 310],
-        background: [0.0; 3],
-        method: Method { backend: Backend::Gpu, projection: CellProjection::Tiles, ..Method::default() },
-    };
-    (mesh, scene)
+    let (mesh, scene) = sample(CellProjection::Tiles, 3, 320).unwrap();
+    let projection = Projection::Perspective { view_angle: 42.0 };
+    let camera = Camera { position: DVec3::new(2.5, -3.0, 1.8), projection, ..scene.camera };
+    // Thick enough that what lies behind is hardly seen.
+    (mesh, Scene { unit_distance: 0.2, camera, size: [320, 310], ..scene })
 }
 
 fn draw(renderer: &Renderer, mesh: &TetMesh, scene: &Scene) -> Result<Frame, RenderError> {
@@ -102,10 +77,14 @@ fn an_order_by_centroid_may_be_found_on_the_device() {
     scene.method.order = Order::Centroid;
     for projection in [scene.camera.projection, Projection::Orthographic { parallel_scale: 1.6 }] {
         scene.camera.projection = projection;
-        let mut renderer = Renderer::new();
-        let on_host = draw(&renderer, &mesh, &scene).unwrap();
         // A software adapter leaves the sort to the processor, others do not.
-        renderer.gpu.as_mut().unwrap().device.software = false;
+        let taken_for = |software| {
+            let mut renderer = Renderer::new();
+            renderer.gpu.as_mut().unwrap().device.software = software;
+            renderer
+        };
+        let renderer = taken_for(false);
+        let on_host = draw(&taken_for(true), &mesh, &scene).unwrap();
         let on_device = draw(&renderer, &mesh, &scene).unwrap();
         assert_eq!(on_device.resources.pipelines, on_host.resources.pipelines + 1);
         assert!(on_device.stages.iter().all(|stage| stage.name != "order"));

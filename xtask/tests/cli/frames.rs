@@ -1,63 +1,18 @@
 //! Sequences of frames, and the plan explained, as a user runs them.
 
-#![allow(clippy::unwrap_used, reason = "a test's helpers fail like the test")]
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-fn run(folder: &Path, args: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
-    let args = args.split(' ');
-    command.args(args).current_dir(folder).env("TETLUX_CACHE_DIR", folder.join("cache")).output().unwrap()
-}
+use crate::program::{SCENE, VTU, fail, json, succeed};
 
-fn succeed(folder: &Path, args: &str) -> String {
-    let output = run(folder, args);
-    assert!(output.status.success(), "{args}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn fail(folder: &Path, args: &str, parts: &[&str]) {
-    let output = run(folder, args);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{args}: {message}");
-    assert!(parts.iter().all(|part| message.contains(part)), "{args}: {parts:?} are not all in: {message}");
-}
-
-fn json(path: &Path) -> serde_json::Value {
-    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
-}
-
-/// Two tetrahedra; the heat of the last point, and its height, are given.
+/// The two tetrahedra, with the heat of the last point and its height.
 fn vtu(heat: f64, height: f64) -> String {
-    format!(
-        r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">
-<UnstructuredGrid><Piece NumberOfPoints="5" NumberOfCells="2">
-<PointData><DataArray type="Float64" Name="heat" format="ascii">0 1 2 3 {heat}</DataArray></PointData>
-<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
-  0 0 0  1 0 0  0 1 0  0 0 1  1 1 {height}
-</DataArray></Points>
-<Cells>
-  <DataArray type="Int32" Name="connectivity" format="ascii">0 1 2 3  1 2 3 4</DataArray>
-  <DataArray type="Int32" Name="offsets" format="ascii">4 8</DataArray>
-  <DataArray type="UInt8" Name="types" format="ascii">10 10</DataArray>
-</Cells></Piece></UnstructuredGrid></VTKFile>"#
-    )
+    let mesh = VTU.replace(">0 1 2 3 4<", &format!(">0 1 2 3 {heat}<"));
+    mesh.replace("1 1 1\n", &format!("1 1 {height}\n"))
 }
-
-const SCENE: &str = r#"
-[field]
-name = "heat"
-[transfer]
-color = [[0.0, 0.2, 0.4, 1.0], [4.0, 1.0, 0.5, 0.1]]
-opacity = [[0.0, 0.5], [4.0, 3.0]]
-[image]
-size = [40, 30]
-"#;
 
 /// Three steps, of which the third has other points, a collection of them, and a scene.
 fn folder() -> TempDir {
@@ -69,7 +24,8 @@ fn folder() -> TempDir {
     }
     let collection = format!(r#"<VTKFile type="Collection" version="0.1"><Collection>{listed}</Collection></VTKFile>"#);
     fs::write(folder.path().join("steps.pvd"), collection).unwrap();
-    fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+    // Of no mesh: each command names its own.
+    fs::write(folder.path().join("scene.toml"), SCENE.replace("[mesh]\npath = \"mesh.vtu\"\n", "")).unwrap();
     folder
 }
 
@@ -206,7 +162,6 @@ fn a_comparison_states_and_measures() {
     let (stated, measured) = (report["stated_error"].as_f64().unwrap(), report["error"]["max"].as_f64().unwrap());
     assert!(measured <= stated && stated <= 1e-2, "{measured:e} {stated:e}");
     // A budget beyond single precision cannot be kept, and is warned of.
-    let output = run(folder, "render scene.toml --mesh step-0.vtu --max-error 1e-9");
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let text = succeed(folder, "render scene.toml --mesh step-0.vtu --max-error 1e-9");
     assert!(text.contains("error budget of 1.0e-9") && text.contains("single precision"), "{text}");
 }

@@ -1,21 +1,10 @@
 //! The commands that write pages of measurements, at small sizes.
 
-#![allow(clippy::unwrap_used, reason = "a test's helpers fail like the test")]
-
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 
 use tetlux_image::read_png;
 
-fn run(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
-    command.args(args).current_dir(folder).env("TETLUX_CACHE_DIR", folder.join("cache")).output().unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
+use crate::program::{run, stderr};
 
 /// Figures of a table's row, of one that has numbers alone after its name.
 fn figures(page: &str, name: &str) -> Vec<f64> {
