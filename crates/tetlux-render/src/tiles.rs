@@ -37,7 +37,7 @@ use crate::look::Spent;
 use crate::stage::Stages;
 use bins::{Bins, TILE};
 use canvas::{Canvas, Tile};
-use ramp::Ramp;
+use ramp::{Ramp, Ramps};
 use record::{CHUNK, Chunk};
 use set_up::SetUp;
 use walk::{Light, Walk};
@@ -71,7 +71,7 @@ pub(crate) fn draw(level: Level, job: &Job, room: &Room, stages: &mut Stages) ->
 fn draw_on(level: Level, job: &Job, chunks: &mut Vec<Chunk>, stages: &mut Stages) -> (Vec<[f32; 4]>, Spent) {
     let eye = &job.eye;
     let all_weights = job.kept.contains(Skip::Weights);
-    let ramps: Vec<Ramp> = job.pieces.iter().map(|piece| Ramp::new(piece, all_weights)).collect();
+    let ramps = Ramps::new(job.pieces.iter().map(|piece| Ramp::new(piece, all_weights)).collect());
     let light = Light {
         ramps: &ramps,
         model: job.weights,

@@ -1,6 +1,6 @@
 //! Rays of a block of pixels through a cell.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat};
+use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask};
 
 use super::record::Record;
 
@@ -35,13 +35,53 @@ const SIDES: [[[f32; 2]; 2]; 8] = {
     [[BACK; 2], [BACK; 2], [FRONT, BACK], [FRONT; 2], [FRONT; 2], [BACK; 2], [BACK; 2], [BACK; 2]]
 };
 
-/// The parts of rays inside a cell.
-pub(crate) struct Segments<S: Simd> {
+/// Where rays enter a cell and leave it.
+#[derive(Clone, Copy)]
+pub(crate) struct Crossing<S: Simd> {
+    /// w, counted from the cell's lean: the first is not above the second where they miss it.
+    front: S::f32s,
+    back: S::f32s,
+    /// w of the lean.
+    lean: S::f32s,
+}
+
+impl<S: Simd> Crossing<S> {
+    /// Nowhere.
+    #[inline(always)]
+    pub(crate) fn none(simd: S) -> Crossing<S> {
+        let zero = S::f32s::splat(simd, 0.0);
+        Crossing { front: zero, back: zero, lean: zero }
+    }
+
+    /// Whether any of the rays meets the cell.
+    #[inline(always)]
+    pub(crate) fn is_met(&self) -> bool {
+        self.front.simd_gt(self.back).any_true()
+    }
+}
+
+/// What integrals along the parts of rays inside a cell need.
+#[derive(Clone, Copy)]
+pub(crate) struct Part<S: Simd> {
     /// The scalar in the middle, less the cell's lowest, and by how much it rises from there to the back end.
     pub(crate) scalar: S::f32s,
     pub(crate) rise: S::f32s,
     /// In device units; 0 where the ray misses the cell.
     pub(crate) length: S::f32s,
+}
+
+impl<S: Simd> Part<S> {
+    /// Of no length.
+    #[inline(always)]
+    pub(crate) fn none(simd: S) -> Part<S> {
+        let zero = S::f32s::splat(simd, 0.0);
+        Part { scalar: zero, rise: zero, length: zero }
+    }
+}
+
+/// The parts of rays inside a cell.
+pub(crate) struct Segments<S: Simd> {
+    pub(crate) part: Part<S>,
     /// The middle's depth from `z_ref` and half the extent in depth, both over `z_ref` in perspective.
     pub(crate) middle: S::f32s,
     pub(crate) half: S::f32s,
@@ -60,21 +100,20 @@ pub(crate) struct Ends<S: Simd> {
     pub(crate) origin: f32,
 }
 
-/// w, counted from the cell's lean, where the rays through some pixels, counted from the middle of its box, enter a cell
-/// and leave it: the first is not above the second where they miss it. `ends` is where they end.
+/// Where the rays through some pixels, counted from the middle of its box, enter a cell and leave it. `ends` is where
+/// they end.
 #[inline(always)]
 pub(crate) fn crossing<S: Simd, const ORTHOGRAPHIC: bool>(
     simd: S,
     record: &Record,
     (x, y): (S::f32s, S::f32s),
     ends: Option<Ends<S>>,
-) -> (S::f32s, S::f32s) {
+) -> Crossing<S> {
     let p = linear(simd, record.planes[0], x, y);
     let q = linear(simd, record.planes[1], x, y);
     let r = linear(simd, record.planes[2], x, y);
     let s = linear(simd, record.planes[3], x, y);
-    // Without branches, which no processor could foretell; and sums where comparisons would do, as units for those are
-    // busy with the planes.
+    // Without branches, which no processor could foretell.
     let [[back_q, front_q], [back_r, front_r]] = SIDES[record.fronts as usize % SIDES.len()];
     let lean = linear(simd, record.lean, x, y);
     let nearest = S::f32s::splat(simd, record.nearest) - lean;
@@ -89,7 +128,7 @@ pub(crate) fn crossing<S: Simd, const ORTHOGRAPHIC: bool>(
         let before = S::f32s::splat(simd, record.level) - levels;
         back = back.max(if ORTHOGRAPHIC { before } else { before / (levels + origin) } - lean);
     }
-    (front, back)
+    Crossing { front, back, lean }
 }
 
 /// The segments of rays that enter a cell and leave it there ([`crossing`]); `stretch` is the rays' length for a depth
@@ -100,10 +139,9 @@ pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(
     record: &Record,
     (x, y): (S::f32s, S::f32s),
     stretch: S::f32s,
-    (front, back): (S::f32s, S::f32s),
+    Crossing { front, back, lean }: Crossing<S>,
 ) -> Segments<S> {
     // Where the ray misses the cell too, both between the farthest vertex and the nearest.
-    let lean = linear(simd, record.lean, x, y);
     let back = back.min(S::f32s::splat(simd, record.nearest) - lean);
     let front = front.max(back);
     let extent = front - back;
@@ -125,7 +163,8 @@ pub(crate) fn segments<S: Simd, const ORTHOGRAPHIC: bool>(
     let scalar = shares[1].mul_add(-record.along, shares[0] * scalar).max(0.0).min(record.range);
     let limit = scalar.min(S::f32s::splat(simd, record.range) - scalar);
     let length = half * stretch * if ORTHOGRAPHIC { 2.0 } else { 2.0 * record.depth };
-    Segments { scalar, rise: rise.min(limit).max(-limit), length, middle, half, shares, tilt }
+    let part = Part { scalar, rise: rise.min(limit).max(-limit), length };
+    Segments { part, middle, half, shares, tilt }
 }
 
 impl<S: Simd> Segments<S> {

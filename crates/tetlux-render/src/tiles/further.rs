@@ -70,8 +70,7 @@ fn in_cell(set_up: &SetUp, fields: &[Further], cell: u32, record: &Record, linea
     let depth = frame.map(|p| p.z + eye.offset.z);
     let farthest = depth[0].max(depth[1]).max(depth[2].max(depth[3])).max(eye.near);
     let scale = if eye.orthographic { eye.pixel } else { farthest * eye.pixel };
-    let middle = record.middle();
-    let across = [0, 1].map(|axis| (f64::from(middle[axis]) + 0.5 - eye.middle[axis]) * scale);
+    let across = [0, 1].map(|axis| (f64::from(record.middle[axis]) + 0.5 - eye.middle[axis]) * scale);
     let origin = DVec3::new(across[0], across[1], farthest);
     let [e1, e2, e3] = [frame[1] - frame[0], frame[2] - frame[0], frame[3] - frame[0]];
     let faces = [e2.cross(e3), e3.cross(e1), e1.cross(e2)];

@@ -47,9 +47,9 @@ impl<S: Simd> Walk<'_, S> {
         let [across, down] = &mut lanes.pixel;
         let [share, aside] = &mut lanes.shares;
         for (values, to) in [
-            (segments.scalar - segments.rise, &mut lanes.front),
-            (segments.scalar + segments.rise, &mut lanes.back),
-            (segments.length, &mut lanes.length),
+            (segments.part.scalar - segments.part.rise, &mut lanes.front),
+            (segments.part.scalar + segments.part.rise, &mut lanes.back),
+            (segments.part.length, &mut lanes.length),
             (segments.shares[0], share),
             (segments.shares[1], aside),
             (segments.tilt, &mut lanes.tilt),

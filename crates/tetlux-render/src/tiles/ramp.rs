@@ -9,6 +9,8 @@ use tetlux_optics::symmetric_f32::{
 };
 use tetlux_optics::transfer_f32::{Piece, Weights};
 
+use super::block::Part;
+
 #[cfg(test)]
 mod tests;
 
@@ -48,6 +50,49 @@ impl Ramp {
     /// Whether it is transparent throughout.
     pub(crate) fn is_empty(&self) -> bool {
         self.low[3] == 0.0 && self.slope[3] == 0.0
+    }
+}
+
+/// The pieces of a transfer function, ascending.
+#[derive(Debug)]
+pub(crate) struct Ramps {
+    pieces: Vec<Ramp>,
+    /// Their upper ends, and as many more as a vector has lanes.
+    uppers: Vec<f32>,
+}
+
+/// Most lanes of a vector.
+const MOST_LANES: usize = 16;
+
+impl Ramps {
+    /// Of pieces in ascending order.
+    pub(crate) fn new(pieces: Vec<Ramp>) -> Ramps {
+        let uppers = pieces.iter().map(|ramp| ramp.ends[1]).chain([f32::MAX; MOST_LANES]).collect();
+        Ramps { pieces, uppers }
+    }
+
+    /// The pieces from the first to the last.
+    #[inline(always)]
+    pub(crate) fn among(&self, [first, last]: [usize; 2]) -> &[Ramp] {
+        &self.pieces[first..=last]
+    }
+
+    /// Those of the pieces from the first to the last on which segments lie that have a length. Scalars are less `base`.
+    #[inline(always)]
+    pub(crate) fn met<S: Simd>(&self, simd: S, [first, last]: [usize; 2], base: f32, part: &Part<S>) -> [usize; 2] {
+        let far = part.rise.max(-part.rise);
+        let seen = part.length.simd_gt(0.0);
+        let low = seen.select(part.scalar - far, S::f32s::splat(simd, f32::MAX)).reduce_min();
+        let high = seen.select(part.scalar + far, S::f32s::splat(simd, f32::MIN)).reduce_max();
+        // Counted, not searched for: no branch depends on it, so that the processor has not to guess.
+        let (mut below, mut begun, mut start) = (first, first, first);
+        while start < last {
+            let uppers = S::f32s::from_slice(simd, &self.uppers[start..start + S::f32s::LEN]) - base;
+            below += uppers.simd_le(low).to_bitmask().count_ones() as usize;
+            begun += uppers.simd_lt(high).to_bitmask().count_ones() as usize;
+            start += S::f32s::LEN;
+        }
+        [below.min(last), begun.max(below).min(last)]
     }
 }
 
@@ -209,27 +254,24 @@ fn add<S: Simd>(simd: S, ramp: &Ramp, alpha: S::f32s, moment: S::f32s, middle: S
     pixels[3] += weight;
 }
 
-/// Composites a segment that meets several pieces, `ramps` ascending. Scalars are less `base`.
+/// Composites a segment that meets several pieces, `ramps` ascending. Its scalars are less `base`.
 #[inline(always)]
 pub(crate) fn add_cut_segment<S: Simd>(
     simd: S,
     ramps: &[Ramp],
     base: f32,
     model: Weights,
-    middle: S::f32s,
-    rise: S::f32s,
-    length: S::f32s,
+    part: &Part<S>,
     pixels: &mut Pixels<S>,
 ) {
-    let (front, back) = (middle - rise, middle + rise);
-    let change = rise + rise;
+    let (front, back) = (part.scalar - part.rise, part.scalar + part.rise);
+    let change = part.rise + part.rise;
     let falling = change.simd_lt(0.0);
-    let zero = S::f32s::splat(simd, 0.0);
+    let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
     // Where the scalar is constant, any large slope makes the piece that begins at or below it the whole segment.
-    let per_width = S::f32s::splat(simd, 1.0) / change.max(-change).max(1e-20);
-    let one = S::f32s::splat(simd, 1.0);
+    let per_width = one / change.max(-change).max(1e-20);
     // Front to back the pieces ascend where the scalar rises, and descend where it falls.
-    for (length, descend) in [(falling.select(zero, length), false), (falling.select(length, zero), true)] {
+    for (length, descend) in [(falling.select(zero, part.length), false), (falling.select(part.length, zero), true)] {
         if !length.simd_gt(0.0).any_true() {
             continue;
         }
@@ -240,40 +282,16 @@ pub(crate) fn add_cut_segment<S: Simd>(
             let cut = ramp.ends[usize::from(!descend)] - base;
             let share = (S::f32s::splat(simd, cut) - front) * per_scalar;
             let end = if step < ramps.len() { share.max(0.0).min(1.0) } else { one };
-            // Where a piece is entered and left it has its own ends and width, however narrow it is.
+            // Where a piece is entered and left it has its own width, however narrow it is.
             let (entered, left) = (begin.simd_gt(0.0), end.simd_lt(1.0));
-            let part = (entered & left).select((per_width * ramp.width).min(1.0), end - begin) * length;
-            if !ramp.is_empty() && part.simd_gt(0.0).any_true() {
+            let length = (entered & left).select((per_width * ramp.width).min(1.0), end - begin) * length;
+            if !ramp.is_empty() {
                 let low = ramp.ends[0] - base;
-                let inside = |s: S::f32s| (s - low).max(0.0).min(ramp.width);
-                let [near, far] =
-                    if descend { [ramp.width, 0.0] } else { [0.0, ramp.width] }.map(|s| S::f32s::splat(simd, s));
-                let (front, back) = (entered.select(near, inside(front)), left.select(far, inside(back)));
-                let half = S::f32s::splat(simd, 0.5);
-                add_segment(simd, ramp, model, (front + back) * half, (back - front) * half, part, pixels);
+                let inside = |s: S::f32s| (s - low).max(0.0).min(ramp.width) * 0.5;
+                let (front, back) = (inside(front), inside(back));
+                add_segment(simd, ramp, model, front + back, back - front, length, pixels);
             }
             begin = end;
         }
     }
-}
-
-/// The one of several pieces on which all segments that have a length lie; `None` if there is none.
-#[inline(always)]
-pub(crate) fn only<S: Simd>(
-    ramps: &[Ramp],
-    base: f32,
-    middle: S::f32s,
-    rise: S::f32s,
-    length: S::f32s,
-) -> Option<&Ramp> {
-    let far = rise.max(-rise);
-    let (low, high) = (middle - far, middle + far);
-    let none = length.simd_le(0.0);
-    for ramp in ramps {
-        let inside = low.simd_ge(ramp.ends[0] - base) & high.simd_le(ramp.ends[1] - base);
-        if (inside | none).all_true() {
-            return Some(ramp);
-        }
-    }
-    None
 }

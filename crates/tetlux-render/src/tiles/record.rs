@@ -47,6 +47,8 @@ pub(crate) struct Record {
     /// First and one past the last pixel, in x and y. Empty: nothing of the cell is seen.
     pub(crate) first: [u16; 2],
     pub(crate) end: [u16; 2],
+    /// The pixel in the box's middle.
+    pub(crate) middle: [f32; 2],
     /// The piece of the transfer function at the lowest scalar, and the last that the range reaches into.
     pub(crate) pieces: [u32; 2],
 }
@@ -59,12 +61,6 @@ impl Record {
     #[inline(always)]
     pub(crate) fn nearest_level(&self, orthographic: bool) -> f32 {
         self.level - if orthographic { self.nearest } else { self.depth * self.nearest / (1.0 + self.nearest) }
-    }
-
-    /// The pixel in the box's middle.
-    #[inline(always)]
-    pub(crate) fn middle(&self) -> [u16; 2] {
-        [self.first[0].midpoint(self.end[0]), self.first[1].midpoint(self.end[1])]
     }
 
     /// Whether any pixel may see the cell.

@@ -297,6 +297,7 @@ impl SetUp<'_> {
             if !seen {
                 (record.first, record.end) = ([0; 2], [0; 2]);
             }
+            record.middle = [middle[0][lane] as f32, middle[1][lane] as f32];
         }
         middle
     }

@@ -36,18 +36,19 @@ impl<S: Simd> Walk<'_, S> {
                 }
                 let record = at(chunks, i);
                 let places = self.places_in(block, record);
-                let (front, back) = crossing::<S, ORTHOGRAPHIC>(self.simd, record, places, ends);
-                if front.simd_gt(back).any_true() {
-                    let segments = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch, (front, back));
+                let crossing = crossing::<S, ORTHOGRAPHIC>(self.simd, record, places, ends);
+                if crossing.is_met() {
+                    let segments = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch, crossing);
                     let mut color = [S::f32s::splat(self.simd, 0.0); 4];
                     if self.light.look.is_some() {
                         self.shade(i, record, &segments, (block, places), &mut color);
                     } else {
-                        self.integrate(record, &segments, &mut color);
+                        let pieces = self.light.pieces(self.simd, record, &segments.part);
+                        self.light.add(self.simd, record, &segments.part, pieces, &mut color);
                     }
                     // Where the ray misses the cell nothing has to move.
                     let depth = segments.depth::<ORTHOGRAPHIC>(self.simd, record);
-                    before = segments.length.simd_gt(0.0).select(depth, before);
+                    before = segments.part.length.simd_gt(0.0).select(depth, before);
                     fragments.push(Fragment { depth: before, color });
                 }
             }

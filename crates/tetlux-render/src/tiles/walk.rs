@@ -4,10 +4,10 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask};
 use tetlux_optics::transfer_f32::Weights;
 
 use super::bins::TILE;
-use super::block::{Ends, Segments, WIDTH, crossing, places, segments};
+use super::block::{Crossing, Ends, Part, WIDTH, crossing, places, segments};
 use super::canvas::{COLUMNS, PIXELS, Tile};
 use super::further::Linear;
-use super::ramp::{Pixels, Ramp, add_cut_segment, add_segment, only};
+use super::ramp::{Pixels, Ramps, add_cut_segment, add_segment};
 use super::record::{Chunk, Record, at};
 use super::sorted::Fragment;
 use crate::backdrop::{BEYOND, Backdrop};
@@ -27,7 +27,7 @@ const TOGETHER: usize = u64::BITS as usize;
 /// What all tiles of a picture have in common.
 #[derive(Clone, Copy)]
 pub(crate) struct Light<'a> {
-    pub(crate) ramps: &'a [Ramp],
+    pub(crate) ramps: &'a Ramps,
     pub(crate) model: Weights,
     /// Side of a pixel at unit depth, and the picture's middle; of use in perspective only.
     pub(crate) pixel: f32,
@@ -46,6 +46,38 @@ pub(crate) struct Light<'a> {
 }
 
 impl Light<'_> {
+    /// The first and the last piece of the transfer function on which segments in a cell lie.
+    #[inline(always)]
+    pub(super) fn pieces<S: Simd>(&self, simd: S, record: &Record, part: &Part<S>) -> [usize; 2] {
+        let [first, last] = record.pieces.map(|piece| piece as usize);
+        if first < last && !self.cut_all {
+            self.ramps.met(simd, [first, last], record.base, part)
+        } else {
+            [first, last]
+        }
+    }
+
+    /// Composites the parts of rays in a cell behind what is there, on the first to the last of some pieces.
+    #[inline(always)]
+    pub(super) fn add<S: Simd>(
+        &self,
+        simd: S,
+        record: &Record,
+        part: &Part<S>,
+        pieces: [usize; 2],
+        pixels: &mut Pixels<S>,
+    ) {
+        match self.ramps.among(pieces) {
+            [ramp] if !self.cut_all => {
+                if !ramp.is_empty() {
+                    let middle = part.scalar + (record.base - ramp.ends[0]);
+                    add_segment(simd, ramp, self.model, middle, part.rise, part.length, pixels);
+                }
+            }
+            ramps => add_cut_segment(simd, ramps, record.base, self.model, part, pixels),
+        }
+    }
+
     /// The deepest end of a tile's rays: a depth from the mesh's origin.
     fn deepest(&self, [left, top]: [u32; 2]) -> f32 {
         let Some((backdrop, _)) = self.backdrop else { return BEYOND };
@@ -67,8 +99,9 @@ pub(crate) struct Walk<'a, S: Simd> {
     pub(super) alive: u64,
     /// The deepest end of a ray, if any ends: a depth from the mesh's origin.
     pub(super) deepest: f32,
-    /// Of cells that are drawn together in a block, where the rays enter and leave those that they meet.
-    crossings: [(S::f32s, S::f32s); TOGETHER],
+    /// Of cells that are drawn together in a block, those that its rays meet: where, and what integrals need.
+    crossings: [Crossing<S>; TOGETHER],
+    parts: [Part<S>; TOGETHER],
     /// Of a run of cells without order: the blocks that each may cover, and a block's fragments. Kept for the next run.
     pub(super) masks: Vec<u64>,
     pub(super) fragments: Vec<Fragment<S>>,
@@ -78,11 +111,10 @@ pub(crate) struct Walk<'a, S: Simd> {
 impl<'a, S: Simd> Walk<'a, S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, light: &'a Light<'a>, origin: [u32; 2], tile: &'a mut Tile) -> Self {
-        let zero = S::f32s::splat(simd, 0.0);
         let (masks, fragments, spent) = (Vec::new(), Vec::new(), Spent::default());
         let (alive, deepest) = (0, light.deepest(origin));
-        let crossings = [(zero, zero); TOGETHER];
-        let mut walk = Walk { simd, light, origin, tile, alive, deepest, crossings, masks, fragments, spent };
+        let (crossings, parts) = ([Crossing::none(simd); TOGETHER], [Part::none(simd); TOGETHER]);
+        let mut walk = Walk { simd, light, origin, tile, alive, deepest, crossings, parts, masks, fragments, spent };
         for block in 0..PIXELS / S::f32s::LEN {
             let alpha = walk.pixels(block)[3];
             walk.alive |= u64::from(alpha.simd_lt(light.opaque).any_true()) << block;
@@ -168,28 +200,32 @@ impl<'a, S: Simd> Walk<'a, S> {
     /// The tile's first pixel, counted from the middle of a cell's box.
     #[inline(always)]
     pub(super) fn from(&self, record: &Record) -> [f32; 2] {
-        let [x, y] = record.middle();
-        [self.origin[0] as f32 - f32::from(x), self.origin[1] as f32 - f32::from(y)]
+        [self.origin[0] as f32 - record.middle[0], self.origin[1] as f32 - record.middle[1]]
     }
 
     /// Composites cells behind what is there, one behind the other.
     #[inline(always)]
     pub(crate) fn add<const ORTHOGRAPHIC: bool>(&mut self, chunks: &[Chunk], run: &[u32]) {
+        let Some(first) = run.first() else { return };
         for cells in run.chunks(TOGETHER) {
-            touch(chunks, cells);
+            let mut records = [at(chunks, *first); TOGETHER];
+            for (record, &cell) in records.iter_mut().zip(cells) {
+                *record = at(chunks, cell);
+            }
+            touch(&records);
             // For each block a bit for each of the cells: the pixels of one block after the other stay in registers.
             let mut covering = [0u64; MOST_BLOCKS];
-            for (bit, &i) in cells.iter().enumerate() {
-                for block in Bits(self.blocks::<ORTHOGRAPHIC>(at(chunks, i))) {
-                    covering[block] |= 1 << bit;
+            for (bit, record) in records[..cells.len()].iter().enumerate() {
+                for block in Bits(self.blocks::<ORTHOGRAPHIC>(record)) {
+                    covering[block % MOST_BLOCKS] |= 1 << bit;
                 }
             }
             let lit = self.light.look.is_some();
             for block in Bits(self.alive) {
                 match covering[block] {
                     0 => {}
-                    bits if lit => self.shade_cells::<ORTHOGRAPHIC>(chunks, cells, bits, block),
-                    bits => self.add_cells::<ORTHOGRAPHIC>(chunks, cells, bits, block),
+                    bits if lit => self.shade_cells::<ORTHOGRAPHIC>(&records, cells, bits, block),
+                    bits => self.add_cells::<ORTHOGRAPHIC>(&records, bits, block),
                 }
             }
             if self.is_done() {
@@ -200,65 +236,54 @@ impl<'a, S: Simd> Walk<'a, S> {
 
     /// Composites those of some cells whose bit is set, in one block.
     #[inline(always)]
-    fn add_cells<const ORTHOGRAPHIC: bool>(&mut self, chunks: &[Chunk], cells: &[u32], bits: u64, block: usize) {
+    fn add_cells<const ORTHOGRAPHIC: bool>(&mut self, records: &[&Record; TOGETHER], bits: u64, block: usize) {
         let (stretch, ends) = (self.stretch(block), self.ends(block));
         let (x, y) = self.places(block, self.origin.map(|first| first as f32));
-        let places = |record: &Record| {
-            let [across, down] = record.middle();
-            (x - f32::from(across), y - f32::from(down))
-        };
-        // First which cells the rays meet: no branch depends on it, so that the processor has not to guess.
+        let places = |record: &Record| (x - record.middle[0], y - record.middle[1]);
+        // One step after the other for all cells, so that the processor has many to work at and none to wait for. First
+        // which cells the rays meet: no branch depends on it, so that there is nothing to guess.
         let (mut met, mut count) = ([0; TOGETHER], 0);
         for bit in Bits(bits) {
-            let record = at(chunks, cells[bit]);
-            let (front, back) = crossing::<S, ORTHOGRAPHIC>(self.simd, record, places(record), ends);
-            met[count % TOGETHER] = cells[bit];
-            self.crossings[count % TOGETHER] = (front, back);
-            count += usize::from(front.simd_gt(back).any_true());
+            let record = records[bit % TOGETHER];
+            let crossing = crossing::<S, ORTHOGRAPHIC>(self.simd, record, places(record), ends);
+            met[count % TOGETHER] = bit as u8;
+            self.crossings[count % TOGETHER] = crossing;
+            count += usize::from(crossing.is_met());
+        }
+        let met = || met[..count].iter().map(|&bit| records[usize::from(bit) % TOGETHER]);
+        let mut pieces = [[0; 2]; TOGETHER];
+        for (((record, &crossing), part), pieces) in met().zip(&self.crossings).zip(&mut self.parts).zip(&mut pieces) {
+            *part = segments::<S, ORTHOGRAPHIC>(self.simd, record, places(record), stretch, crossing).part;
+            *pieces = self.light.pieces(self.simd, record, part);
         }
         let mut pixels = self.pixels(block);
-        for (&cell, &crossing) in met[..count].iter().zip(&self.crossings) {
-            let record = at(chunks, cell);
-            let segments = segments::<S, ORTHOGRAPHIC>(self.simd, record, places(record), stretch, crossing);
-            self.integrate(record, &segments, &mut pixels);
+        for ((record, part), &pieces) in met().zip(&self.parts).zip(&pieces) {
+            self.light.add(self.simd, record, part, pieces, &mut pixels);
         }
         self.store(block, &pixels);
     }
 
     /// The same where segments are shaded one by one.
     #[inline(always)]
-    fn shade_cells<const ORTHOGRAPHIC: bool>(&mut self, chunks: &[Chunk], cells: &[u32], bits: u64, block: usize) {
+    fn shade_cells<const ORTHOGRAPHIC: bool>(
+        &mut self,
+        records: &[&Record; TOGETHER],
+        cells: &[u32],
+        bits: u64,
+        block: usize,
+    ) {
         let (stretch, ends) = (self.stretch(block), self.ends(block));
         let mut pixels = self.pixels(block);
         for bit in Bits(bits) {
-            let record = at(chunks, cells[bit]);
+            let record = records[bit % TOGETHER];
             let places = self.places_in(block, record);
-            let (front, back) = crossing::<S, ORTHOGRAPHIC>(self.simd, record, places, ends);
-            if front.simd_gt(back).any_true() {
-                let segments = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch, (front, back));
+            let crossing = crossing::<S, ORTHOGRAPHIC>(self.simd, record, places, ends);
+            if crossing.is_met() {
+                let segments = segments::<S, ORTHOGRAPHIC>(self.simd, record, places, stretch, crossing);
                 self.shade(cells[bit], record, &segments, (block, places), &mut pixels);
             }
         }
         self.store(block, &pixels);
-    }
-
-    #[inline(always)]
-    pub(super) fn integrate(&self, record: &Record, segments: &Segments<S>, pixels: &mut Pixels<S>) {
-        let Segments { scalar, rise, length, .. } = *segments;
-        let ramps = &self.light.ramps[record.pieces[0] as usize..=record.pieces[1] as usize];
-        let ramp = match ramps {
-            _ if self.light.cut_all => None,
-            [ramp] => Some(ramp),
-            ramps => only::<S>(ramps, record.base, scalar, rise, length),
-        };
-        if let Some(ramp) = ramp {
-            if !ramp.is_empty() {
-                let middle = scalar + (record.base - ramp.ends[0]);
-                add_segment(self.simd, ramp, self.light.model, middle, rise, length, pixels);
-            }
-        } else {
-            add_cut_segment(self.simd, ramps, record.base, self.light.model, scalar, rise, length, pixels);
-        }
     }
 }
 
@@ -278,10 +303,9 @@ impl Iterator for Bits {
 
 /// Loads records before they are needed, so that the processor waits for all at once.
 #[inline(always)]
-fn touch(chunks: &[Chunk], cells: &[u32]) {
+fn touch(records: &[&Record; TOGETHER]) {
     let mut touched = 0;
-    for &i in cells {
-        let record = at(chunks, i);
+    for record in records {
         // In both of its cache lines.
         touched ^= record.planes[0][0].to_bits() ^ record.level.to_bits();
     }

@@ -22,7 +22,8 @@ fn segment<S: Simd>(simd: S, ramps: &[Ramp], model: Weights, [front, back, lengt
     if let [ramp] = ramps {
         add_segment(simd, ramp, model, splat(middle - ramp.ends[0]), splat(rise), splat(length), &mut pixels);
     } else {
-        add_cut_segment(simd, ramps, 0.0, model, splat(middle), splat(rise), splat(length), &mut pixels);
+        let part = Part { scalar: splat(middle), rise: splat(rise), length: splat(length) };
+        add_cut_segment(simd, ramps, 0.0, model, &part, &mut pixels);
     }
     pixels.map(|p| p[S::f32s::LEN - 1])
 }
