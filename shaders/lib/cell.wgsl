@@ -267,8 +267,9 @@ fn leaning(v: array<Vertex, 4>, kind: f32, parity: f32) -> Leaning {
             let rate = sides[i].turned.xy * (rise * inward / max(volume, 1e-30));
             result.rises[i] = limited(vec3<f32>(rate, front / max(result.heights[i], 1.0 / STEEPEST)));
         }
-        let apart = planes[i].xy - planes[lean].xy;
-        let is_along = dot(apart, apart) < ALONG * ALONG * dot(planes[lean].xy, planes[lean].xy);
+        let apart = abs(planes[i].xy - planes[lean].xy);
+        let slope = abs(planes[lean].xy);
+        let is_along = max(apart.x, apart.y) < ALONG * max(slope.x, slope.y);
         along |= select(0u, 1u << i, is_along && !sides[i].is_edge_on);
     }
     // Nothing but itself lies along it.

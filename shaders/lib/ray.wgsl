@@ -29,8 +29,8 @@ fn crossings(planes: array<vec4<f32>, 4>, origins: vec4<f32>, at: vec2<f32>) -> 
     return Crossings(lean, w - select(vec4<f32>(lean), none, marks > vec4<f32>(2.0)));
 }
 
-// What a ray crosses of a cell: w on the cell's lean, if it has one, and by how much w exceeds that at the front and at the back
-// end. The ray misses the cell unless the first end is greater.
+// What a ray crosses of a cell: w on the cell's lean, if it has one, and by how much w exceeds that at the front and at the
+// back end. The ray misses the cell unless the first end is greater.
 struct Span {
     lean: f32,
     front: f32,

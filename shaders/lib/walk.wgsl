@@ -135,7 +135,8 @@ struct Place {
     // Distance along the ray, in device units, from where the pivot is passed.
     distance: f32,
     value: Quantity,
-    // Twice the area of the triangle that is crossed there, as seen; none if it is seen narrow.
+    // Twice the area of the triangle that is crossed there, as seen; none if it is seen narrow, or the ray passes beside it by
+    // rounding.
     area: f32,
 }
 
@@ -164,7 +165,8 @@ fn place_of(a: Corner, b: Corner, c: Corner) -> Place {
     let ac = third.offset - first.offset;
     let bc = third.offset - second.offset;
     let whole = ab.x * ac.y - ab.y * ac.x;
-    return Place(distance, value, select(0.0, whole, whole > NARROW_FACE * dot(bc, bc)));
+    let is_crossed = min(area(a, b), min(area(b, c), area(c, a))) >= 0.0;
+    return Place(distance, value, select(0.0, whole, is_crossed && whole > NARROW_FACE * dot(bc, bc)));
 }
 
 // Six volumes of the cell between a triangle and an apex, by the shortest way to that: across a thin cell, where nothing
@@ -187,8 +189,8 @@ fn volume_of(a: Corner, b: Corner, c: Corner, apex: Corner) -> f32 {
 // A cell is thin if a ray's way through it is less than this share of how wide it is seen.
 const THIN = 0.0625;
 
-// A distance between two places is good to this share of the larger of its ends.
-const DISTANCE_ROUNDING = 2e-6;
+// A distance between two places is good to this share of the larger of its ends, however steeply the ray meets a face.
+const DISTANCE_ROUNDING = 3e-5;
 
 // The length of a ray in a cell of so many volumes that it enters at `front` and leaves at `back`; `beside` is twice the area
 // between the ray and the edge that both triangles have. In a thin cell the difference of two distances has lost its digits:

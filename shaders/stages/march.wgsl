@@ -121,7 +121,7 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
                 let begin = clamp((near - front.distance) / way, 0.0, 1.0);
                 let start = max(front.distance, near);
                 var segment: Segment;
-                segment.length = (1.0 - begin) * way;
+                segment.length = select(way, back.distance - near, front.distance < near);
                 segment.at = at;
                 segment.front = in_cell(front.value + begin * (back.value - front.value), cell);
                 segment.back = in_cell(back.value, cell);
@@ -131,6 +131,7 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
                 }
                 front = back;
             }
+            front.area = back.area;
             if next == NONE || color.a >= march.opaque || is_hidden(depth_at(ray, front.distance), at) {
                 is_over = true;
                 break;

@@ -190,8 +190,8 @@ impl Lens {
                 let rate = sides[i].turned.truncate() * (rise * inward / volume.max(1e-30));
                 found.rises[i] = limited(rate.extend(front / heights[i].max(1.0 / STEEPEST)));
             }
-            let [slope, apart] = [planes[lean], planes[i] - planes[lean]].map(Vec3::truncate);
-            along[i] = apart.dot(apart) < ALONG * ALONG * slope.dot(slope) && !sides[i].is_edge_on;
+            let [slope, apart] = [planes[lean], planes[i] - planes[lean]].map(|x| x.truncate().abs());
+            along[i] = apart.max_element() < ALONG * slope.max_element() && !sides[i].is_edge_on;
         }
         if (0..4).all(|i| i == lean || !along[i]) || side.is_edge_on {
             return found;

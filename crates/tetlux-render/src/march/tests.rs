@@ -71,7 +71,7 @@ fn volume_of([a, b, c]: [Vec3; 3], apex: Vec3) -> f32 {
 /// The shader's, of the distances and the areas of the two places.
 fn way_through(along: Vec3, volume: f32, beside: f32, front: [f32; 2], back: [f32; 2]) -> f32 {
     const THIN: f32 = 0.0625;
-    const DISTANCE_ROUNDING: f32 = 2e-6;
+    const DISTANCE_ROUNDING: f32 = 3e-5;
     let difference = back[0] - front[0];
     if front[1].min(back[1]) <= 0.0 {
         return difference;
