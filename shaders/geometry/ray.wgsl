@@ -13,7 +13,7 @@ alias Fragment = FlatFragment;
 fn place(vertex_index: u32, instance_index: u32) -> Fragment {
     let i = vertex_index / 6u;
     let cell = projected[i];
-    if cell.gradient.w == HIDDEN {
+    if cell.rise.w == HIDDEN {
         return nowhere();
     }
     let c = corners(i);

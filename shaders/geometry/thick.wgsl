@@ -50,7 +50,7 @@ fn place(vertex_index: u32, instance_index: u32) -> Fragment {
     var fragment: Fragment;
     // Outside the clip volume: nothing is drawn.
     fragment.position = vec4<f32>(2.0, 2.0, 2.0, 1.0);
-    let kind = cell.gradient.w;
+    let kind = cell.rise.w;
     if kind == HIDDEN {
         return fragment;
     }

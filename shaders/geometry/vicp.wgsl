@@ -9,6 +9,7 @@ import package::lib::mesh::{corners};
 import package::lib::cell::{Cell, HIDDEN, DEEP};
 import package::lib::silhouette::{silhouette_corner, face_corner};
 import package::lib::span::{Segment};
+import package::lib::ray::{crossings};
 import package::lib::flat::{FlatFragment, flat_fragment, flat_segment, flat_planes, nowhere};
 
 @group(1) @binding(1) var<storage, read> projected: array<Cell>;
@@ -22,14 +23,14 @@ const WHOLE = 4u;
 // sliver back faces.
 fn is_whole(cell: Cell) -> bool {
     let front = max(max(cell.planes[0].w, cell.planes[1].w), max(cell.planes[2].w, cell.planes[3].w));
-    return cell.gradient.w == DEEP || front <= 0.0;
+    return cell.rise.w == DEEP || front <= 0.0;
 }
 
 fn place(vertex_index: u32, instance_index: u32) -> Fragment {
     let i = vertex_index / 12u;
     let face = vertex_index % 12u / 3u;
     let cell = projected[i];
-    if cell.gradient.w == HIDDEN {
+    if cell.rise.w == HIDDEN {
         return nowhere();
     }
     if is_whole(cell) {
@@ -49,15 +50,13 @@ fn place(vertex_index: u32, instance_index: u32) -> Fragment {
 
 // The front face that a ray meets last: the one that it enters the cell through.
 fn entry_face(planes: array<vec4<f32>, 4>, origins: vec4<f32>, at: vec2<f32>) -> u32 {
+    let met = crossings(planes, origins, at);
     var entry = WHOLE;
     var least = 0.0;
     for (var i = 0u; i < 4u; i++) {
-        let plane = planes[i];
-        let from_origin = at - select(origins.xy, origins.zw, i == 0u);
-        let w = dot(plane.xy, from_origin) + plane.z;
-        if plane.w > 0.0 && (entry == WHOLE || w < least) {
+        if planes[i].w > 0.0 && (entry == WHOLE || met.beyond[i] < least) {
             entry = i;
-            least = w;
+            least = met.beyond[i];
         }
     }
     return entry;

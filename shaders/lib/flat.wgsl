@@ -19,7 +19,7 @@ fn nowhere() -> FlatFragment {
 
 // The vertex at a place in pixels from the picture's middle, for the i-th cell of the batch.
 fn flat_fragment(at: vec2<f32>, i: u32, cell: Cell, c: Corners, face: u32) -> FlatFragment {
-    let reference = cell_reference(c.vertices, c.scalars, cell.gradient.w);
+    let reference = cell_reference(c.vertices, c.scalars, cell.rise.w);
     let linear = linear_in(cell, reference, c);
     var fragment: FlatFragment;
     fragment.position = vec4<f32>(at.x * 2.0 / view.size.x, -at.y * 2.0 / view.size.y, 0.5, 1.0);

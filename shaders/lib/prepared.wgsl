@@ -19,7 +19,7 @@ struct Prepared {
 fn prepared(i: u32) -> Prepared {
     let cell = projected_cell(i);
     let c = corners(i);
-    let reference = cell_reference(c.vertices, c.scalars, cell.gradient.w);
+    let reference = cell_reference(c.vertices, c.scalars, cell.rise.w);
     let linear = linear_in(cell, reference, c);
     return Prepared(cell.planes, linear, reference, pieces_between(reference.s.x, reference.s.y, entry_of(i)));
 }

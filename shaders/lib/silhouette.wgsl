@@ -102,7 +102,7 @@ fn outline_extent(o: Outline) -> f32 {
 
 // Corner k, 0 to 3 in cyclic order, of what is drawn, in pixels from the picture's middle.
 fn silhouette_corner(cell: Cell, v: array<Vertex, 4>, k: u32) -> vec2<f32> {
-    if cell.gradient.w == DEEP {
+    if cell.rise.w == DEEP {
         return boxed(deep_bounds(v), k);
     }
     var axis = vec2<f32>(0.0);

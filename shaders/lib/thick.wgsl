@@ -12,7 +12,7 @@ import package::lib::silhouette::{Outline, NARROW, cross2, is_movable, outline_e
 import package::axes::quantity::{Quantity, quantity_of, packed};
 import package::axes::shading::{pieces_between};
 
-// Kind of a cell that is decomposed, as stored in gradient.w. Those that reach over the near plane, or far in depth, are
+// Kind of a cell that is decomposed, as stored in rise.w. Those that reach over the near plane, or far in depth, are
 // not: their vertices lie so far from the picture that interpolation over it would lose its digits. Nor are those that are
 // seen so narrow that their corners cannot be moved outwards. They keep their planes, and fragments find their segments as
 // in lib::ray.
@@ -172,6 +172,6 @@ fn decompose(c: Corners, entry: u32) -> Cell {
     cell.planes[1] = packed(front.quantity);
     cell.planes[2] = packed(back.quantity);
     cell.planes[3] = vec4<f32>(f32(outer), f32(count), vec2<f32>(pieces));
-    cell.gradient.w = THICK;
+    cell.rise.w = THICK;
     return cell;
 }

@@ -20,7 +20,7 @@ struct Footprint {
 
 fn footprint(cell: Cell, v: array<Vertex, 4>) -> Footprint {
     var result: Footprint;
-    if cell.gradient.w == HIDDEN {
+    if cell.rise.w == HIDDEN {
         return result;
     }
     for (var k = 0u; k < 4u; k++) {

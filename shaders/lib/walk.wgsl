@@ -8,7 +8,7 @@
 //
 // The twin in Rust is tetlux-render, march.
 import package::lib::view::{view, ORTHOGRAPHIC};
-import package::lib::cell::{NUDGE};
+import package::lib::cell::{NUDGE, face_normal};
 import package::axes::quantity::{Quantity};
 
 // Projected is onto two axes of eye space, along the third, which is the ray's main one: a ray far aside in a wide view
@@ -28,6 +28,8 @@ struct Ray {
 // A vertex as a ray sees it.
 struct Corner {
     name: u32,
+    // As the mesh has it: differences of these are exact to their own last digit.
+    position: vec3<f32>,
     offset: vec2<f32>,
     // Distance along the ray, in device units, from where the pivot is passed.
     distance: f32,
@@ -133,7 +135,13 @@ struct Place {
     // Distance along the ray, in device units, from where the pivot is passed.
     distance: f32,
     value: Quantity,
+    // Twice the area of the triangle that is crossed there, as seen; none if it is seen narrow, or the ray passes beside it by
+    // rounding.
+    area: f32,
 }
+
+// A triangle is seen narrow if twice its area is less than this share of its longest edge's square.
+const NARROW_FACE = 0.0625;
 
 // Where the ray crosses a triangle.
 fn place_of(a: Corner, b: Corner, c: Corner) -> Place {
@@ -153,5 +161,48 @@ fn place_of(a: Corner, b: Corner, c: Corner) -> Place {
     let along = crossing(first, second, third);
     let distance = first.distance + along.x * (second.distance - first.distance) + along.y * (third.distance - first.distance);
     let value = (1.0 - along.x - along.y) * first.value + along.x * second.value + along.y * third.value;
-    return Place(distance, value);
+    let ab = second.offset - first.offset;
+    let ac = third.offset - first.offset;
+    let bc = third.offset - second.offset;
+    let whole = ab.x * ac.y - ab.y * ac.x;
+    let is_crossed = min(area(a, b), min(area(b, c), area(c, a))) >= 0.0;
+    return Place(distance, value, select(0.0, whole, is_crossed && whole > NARROW_FACE * dot(bc, bc)));
+}
+
+// Six volumes of the cell between a triangle and an apex, by the shortest way to that: across a thin cell, where nothing
+// cancels.
+fn volume_of(a: Corner, b: Corner, c: Corner, apex: Corner) -> f32 {
+    let to_a = apex.position - a.position;
+    let to_b = apex.position - b.position;
+    let to_c = apex.position - c.position;
+    let lengths = vec3<f32>(dot(to_a, to_a), dot(to_b, to_b), dot(to_c, to_c));
+    var way = to_a;
+    if lengths.y < lengths.x {
+        way = to_b;
+    }
+    if lengths.z < min(lengths.x, lengths.y) {
+        way = to_c;
+    }
+    return abs(dot(face_normal(a.position, b.position, c.position), way));
+}
+
+// A cell is thin if a ray's way through it is less than this share of how wide it is seen.
+const THIN = 0.0625;
+
+// A distance between two places is good to this share of the larger of its ends, however steeply the ray meets a face.
+const DISTANCE_ROUNDING = 3e-5;
+
+// The length of a ray in a cell of so many volumes that it enters at `front` and leaves at `back`; `beside` is twice the area
+// between the ray and the edge that both triangles have. In a thin cell the difference of two distances has lost its digits:
+// there six volumes are the area of the first triangle times the way from it to the apex, of which the ray goes as large a part
+// as `beside` is of the second triangle. Where these two differ by more than rounding the ray is not in these triangles.
+fn way_through(ray: Ray, volume: f32, beside: f32, front: Place, back: Place) -> f32 {
+    let difference = back.distance - front.distance;
+    if !(min(front.area, back.area) > 0.0) {
+        return difference;
+    }
+    let way = length(ray.along) * (volume / front.area) * (beside / back.area);
+    let is_thin = way * way < THIN * THIN * front.area;
+    let unsure = DISTANCE_ROUNDING * max(abs(front.distance), abs(back.distance));
+    return select(difference, way, is_thin && abs(way - difference) < unsure);
 }

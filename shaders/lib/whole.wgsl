@@ -10,6 +10,6 @@ import package::axes::quantity::{linear_in};
 fn whole_segment(i: u32, at: vec2<f32>) -> Segment {
     let c = corners(i);
     let cell = project_cell(c.vertices, c.scalars, c.parity);
-    let reference = cell_reference(c.vertices, c.scalars, cell.gradient.w);
+    let reference = cell_reference(c.vertices, c.scalars, cell.rise.w);
     return cell_segment(cell.planes, linear_in(cell, reference, c), reference, at);
 }

@@ -1,13 +1,12 @@
 // What is linear in a cell: luminance and, in w, extinction, classified at its vertices. Whatever the transfer function
 // does between the vertices' scalars is lost: the artifact that classification after interpolation avoids.
-import package::lib::view::{rotated};
-import package::lib::cell::{Cell, Corners, Reference, STEEPEST, rounded_by};
+import package::lib::cell::{Cell, Corners, Reference, STEEPEST, leaning, rounded_by};
 import package::axes::data::{has_own, own_scalar, scalar_of};
 import package::axes::attributes::{attributes_of};
 
 alias Quantity = vec4<f32>;
 
-// The derivatives by x, y and z, and the value at the reference vertex's depth and rounded pixel.
+// The rise (lib::cell, Leaning), and the value at the rounded pixel of the reference vertex.
 alias Linear = array<vec4<f32>, 4>;
 
 fn quantity_of(scalar: f32, name: u32) -> Quantity {
@@ -37,7 +36,6 @@ fn unpacked(stored: vec4<f32>) -> Quantity {
 }
 
 fn linear_in(cell: Cell, reference: Reference, corners: Corners) -> Linear {
-    let v = corners.vertices;
     let s = corners.scalars;
     let names = corners.names;
     let c = array<vec4<f32>, 4>(
@@ -46,32 +44,27 @@ fn linear_in(cell: Cell, reference: Reference, corners: Corners) -> Linear {
         quantity_of(s.z, names.z),
         quantity_of(s.w, names.w),
     );
-    let e1 = v[1].position - v[0].position;
-    let e2 = v[2].position - v[0].position;
-    let e3 = v[3].position - v[0].position;
-    let volume = dot(e1, cross(e2, e3));
-    let inverse = select(-1.0, 1.0, volume >= 0.0) / max(abs(volume), 1e-30);
-    let n1 = rotated(cross(e2, e3) * inverse);
-    let n2 = rotated(cross(e3, e1) * inverse);
-    let n3 = rotated(cross(e1, e2) * inverse);
+    let seen = leaning(corners.vertices, cell.rise.w, corners.parity);
     var linear: Linear;
+    linear[3] = c[reference.index];
     for (var i = 0u; i < 3u; i++) {
-        let rate = (c[1] - c[0]) * n1[i] + (c[2] - c[0]) * n2[i] + (c[3] - c[0]) * n3[i];
-        linear[i] = clamp(rate, vec4<f32>(-STEEPEST), vec4<f32>(STEEPEST));
+        var rise = vec4<f32>(0.0);
+        for (var k = 0u; k < 4u; k++) {
+            rise += (c[k] - linear[3]) * seen.rises[k][i];
+        }
+        linear[i] = clamp(rise, vec4<f32>(-STEEPEST), vec4<f32>(STEEPEST));
     }
-    linear[3] = quantity_of(reference.scalar, names[reference.index]);
     for (var k = 0u; k < 4u; k++) {
         linear[3][k] -= rounded_by(reference, vec2<f32>(linear[0][k], linear[1][k]));
     }
     return linear;
 }
 
-// The value where the ray of that direction lies `scaled` depths before the reference vertex, which it passes at a
-// distance of `across` depths. Rounding must not make it negative.
-fn linear_at(linear: Linear, depth: f32, across: vec2<f32>, direction: vec3<f32>, scaled: f32) -> Quantity {
-    let aside = linear[0] * across.x + linear[1] * across.y;
-    let along = linear[0] * direction.x + linear[1] * direction.y + linear[2] * direction.z;
-    return max(linear[3] + depth * (aside - scaled * along), vec4<f32>(0.0));
+// The value on the ray at a place in pixels from the reference vertex, as rounded, where w exceeds that of the cell's lean, if
+// it has one, by `beyond`; `share` is 1 / (1 + w), in orthographic views 1. Rounding must not make it negative.
+fn linear_at(linear: Linear, place: vec2<f32>, beyond: f32, share: f32) -> Quantity {
+    let rise = linear[0] * place.x + linear[1] * place.y - linear[2] * beyond;
+    return max(linear[3] + rise * share, vec4<f32>(0.0));
 }
 
 // What lib::flat hands to fragments: no more than this quantity needs, for every value costs time.

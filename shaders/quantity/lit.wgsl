@@ -1,6 +1,6 @@
 // What is linear in a cell: one scalar or two, and the gradient that is the normal of light. In space, not in the picture:
 // normals are right in perspective.
-import package::lib::cell::{Cell, Reference, Corners, rounded_by};
+import package::lib::cell::{Cell, Reference, Corners, leaning, rounded_by};
 import package::lib::further::{Field, field_in, field_at};
 import package::lib::gradients::{gradients};
 import package::axes::data::{has_own, own_scalar, scalar_of};
@@ -39,19 +39,22 @@ fn linear_in(cell: Cell, reference: Reference, c: Corners) -> Linear {
         gradients[c.names.z],
         gradients[c.names.w],
     ));
+    let seen = leaning(c.vertices, cell.rise.w, c.parity);
     var linear: Linear;
-    linear.scalar = Field(vec4<f32>(cell.gradient.xyz, reference.scalar - rounded_by(reference, cell.gradient.xy)), reference.s);
-    linear.second = field_in(reference, c, seconds_of(c.cell, c.names));
-    linear.gradient = array<Field, 3>(field_in(reference, c, g[0]), field_in(reference, c, g[1]), field_in(reference, c, g[2]));
+    linear.scalar = Field(vec4<f32>(cell.rise.xyz, reference.scalar - rounded_by(reference, cell.rise.xy)), reference.s);
+    linear.second = field_in(seen, reference, seconds_of(c.cell, c.names));
+    for (var i = 0u; i < 3u; i++) {
+        linear.gradient[i] = field_in(seen, reference, g[i]);
+    }
     return linear;
 }
 
-fn linear_at(linear: Linear, depth: f32, across: vec2<f32>, direction: vec3<f32>, scaled: f32) -> Quantity {
-    let x = field_at(linear.gradient[0], depth, across, direction, scaled);
-    let y = field_at(linear.gradient[1], depth, across, direction, scaled);
-    let z = field_at(linear.gradient[2], depth, across, direction, scaled);
-    let scalar = field_at(linear.scalar, depth, across, direction, scaled);
-    let second = field_at(linear.second, depth, across, direction, scaled);
+fn linear_at(linear: Linear, place: vec2<f32>, beyond: f32, share: f32) -> Quantity {
+    let x = field_at(linear.gradient[0], place, beyond, share);
+    let y = field_at(linear.gradient[1], place, beyond, share);
+    let z = field_at(linear.gradient[2], place, beyond, share);
+    let scalar = field_at(linear.scalar, place, beyond, share);
+    let second = field_at(linear.second, place, beyond, share);
     return Quantity(vec4<f32>(scalar, second, 0.0, 0.0), vec4<f32>(x, y, z, 0.0));
 }
 

@@ -1,5 +1,5 @@
 // What is linear in a cell: two scalars. They are classified after they have been interpolated.
-import package::lib::cell::{Cell, Reference, Corners, rounded_by};
+import package::lib::cell::{Cell, Reference, Corners, leaning, rounded_by};
 import package::lib::further::{Field, field_in, field_at};
 import package::axes::data::{has_own, own_scalar, scalar_of};
 import package::axes::second::{SECOND_CELLWISE, seconds_of, second_of};
@@ -29,15 +29,13 @@ fn in_cell(value: Quantity, cell: u32) -> Quantity {
 }
 
 fn linear_in(cell: Cell, reference: Reference, c: Corners) -> Linear {
-    let scalar = Field(vec4<f32>(cell.gradient.xyz, reference.scalar - rounded_by(reference, cell.gradient.xy)), reference.s);
-    return Linear(scalar, field_in(reference, c, seconds_of(c.cell, c.names)));
+    let seen = leaning(c.vertices, cell.rise.w, c.parity);
+    let scalar = Field(vec4<f32>(cell.rise.xyz, reference.scalar - rounded_by(reference, cell.rise.xy)), reference.s);
+    return Linear(scalar, field_in(seen, reference, seconds_of(c.cell, c.names)));
 }
 
-fn linear_at(linear: Linear, depth: f32, across: vec2<f32>, direction: vec3<f32>, scaled: f32) -> Quantity {
-    return vec2<f32>(
-        field_at(linear.scalar, depth, across, direction, scaled),
-        field_at(linear.second, depth, across, direction, scaled),
-    );
+fn linear_at(linear: Linear, place: vec2<f32>, beyond: f32, share: f32) -> Quantity {
+    return vec2<f32>(field_at(linear.scalar, place, beyond, share), field_at(linear.second, place, beyond, share));
 }
 
 // What lib::flat hands to fragments: no more than this quantity needs, for every value costs time.

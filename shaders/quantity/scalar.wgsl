@@ -4,8 +4,8 @@ import package::axes::data::{has_own, own_scalar, scalar_of};
 
 alias Quantity = f32;
 
-// The gradient and, in w, the value at the reference vertex's depth and rounded pixel; the least and the greatest value. The
-// rest is unused.
+// The rise (lib::cell, Leaning) and, in w, the value at its rounded pixel; the least and the greatest value. The rest is
+// unused.
 alias Linear = array<vec4<f32>, 4>;
 
 fn quantity_of(scalar: f32, name: u32) -> Quantity {
@@ -36,18 +36,17 @@ fn unpacked(stored: vec4<f32>) -> Quantity {
 
 fn linear_in(cell: Cell, reference: Reference, c: Corners) -> Linear {
     return Linear(
-        vec4<f32>(cell.gradient.xyz, reference.scalar - rounded_by(reference, cell.gradient.xy)),
+        vec4<f32>(cell.rise.xyz, reference.scalar - rounded_by(reference, cell.rise.xy)),
         vec4<f32>(reference.s, 0.0, 0.0),
         vec4<f32>(0.0),
         vec4<f32>(0.0),
     );
 }
 
-// The value where the ray of that direction lies `scaled` depths before the reference vertex, which it passes at a
-// distance of `across` depths.
-fn linear_at(linear: Linear, depth: f32, across: vec2<f32>, direction: vec3<f32>, scaled: f32) -> Quantity {
-    let gradient = linear[0].xyz;
-    let value = linear[0].w + depth * (dot(gradient.xy, across) - scaled * dot(gradient, direction));
+// The value on the ray at a place in pixels from the reference vertex, as rounded, where w exceeds that of the cell's lean, if
+// it has one, by `beyond`; `share` is 1 / (1 + w), in orthographic views 1.
+fn linear_at(linear: Linear, place: vec2<f32>, beyond: f32, share: f32) -> Quantity {
+    let value = linear[0].w + (dot(linear[0].xy, place) - linear[0].z * beyond) * share;
     return clamp(value, linear[1].x, linear[1].y);
 }
 
@@ -64,18 +63,18 @@ struct RayFragment {
     // The pieces of the transfer function that the cell's scalars meet, the cell's place in the order, and the face that
     // is drawn, if it is one.
     @location(6) @interpolate(flat) pieces_entry: vec4<u32>,
-    @location(7) @interpolate(flat) gradient_value: vec4<f32>,
+    @location(7) @interpolate(flat) rise_value: vec4<f32>,
     @location(8) @interpolate(flat) range: vec2<f32>,
 }
 
 fn with_linear(fragment: RayFragment, linear: Linear) -> RayFragment {
     var result = fragment;
-    result.gradient_value = linear[0];
+    result.rise_value = linear[0];
     result.range = linear[1].xy;
     return result;
 }
 
 fn linear_of(fragment: RayFragment) -> Linear {
     let none = vec4<f32>(0.0);
-    return Linear(fragment.gradient_value, vec4<f32>(fragment.range, 0.0, 0.0), none, none);
+    return Linear(fragment.rise_value, vec4<f32>(fragment.range, 0.0, 0.0), none, none);
 }

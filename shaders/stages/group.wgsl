@@ -23,11 +23,11 @@ fn color(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         var next = Hit(FAR, 0u);
         for (var i = 0u; i < batch.count; i++) {
             let cell = projected_cell(i);
-            if cell.gradient.w == HIDDEN {
+            if cell.rise.w == HIDDEN {
                 continue;
             }
             let c = corners(i);
-            let reference = cell_reference(c.vertices, c.scalars, cell.gradient.w);
+            let reference = cell_reference(c.vertices, c.scalars, cell.rise.w);
             next = next_behind(last, next, hit_of(cell.planes, reference, i, at));
         }
         if next.depth >= FAR {

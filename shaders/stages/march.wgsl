@@ -7,7 +7,7 @@ import package::lib::view::{view, frame_of};
 import package::lib::mesh_buffers::{points, cells};
 import package::lib::span::{Segment};
 import package::lib::no_data::{NO_DATA};
-import package::lib::walk::{Ray, Corner, ray_through, offset_from, depth_at, turns, area, place_of};
+import package::lib::walk::{Ray, Corner, ray_through, offset_from, depth_at, turns, area, place_of, volume_of, way_through};
 import package::axes::quantity::{quantity_at, in_cell};
 import package::axes::shading::{pieces_between, shade};
 import package::axes::surface::{cut, is_hidden};
@@ -32,8 +32,9 @@ struct March {
 const NONE = 0xffffffffu;
 
 fn corner_of(ray: Ray, cell: u32, name: u32) -> Corner {
-    let frame = frame_of(points[name].xyz);
-    return Corner(name, offset_from(ray, frame), dot(ray.along, frame), quantity_at(cell, name));
+    let position = points[name].xyz;
+    let frame = frame_of(position);
+    return Corner(name, position, offset_from(ray, frame), dot(ray.along, frame), quantity_at(cell, name));
 }
 
 // The triangle through which the ray leaves the cell between the triangle abc, through which it came in, and an apex: the
@@ -99,6 +100,7 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
             let apex_name = names.x ^ names.y ^ names.z ^ names.w ^ a.name ^ b.name ^ c.name;
             let apex = corner_of(ray, cell, apex_name);
             let out = left_out(a, b, c, apex);
+            let volume = volume_of(a, b, c, apex);
             var dropped = c.name;
             if out == 0u {
                 dropped = a.name;
@@ -111,13 +113,15 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
             }
             c = apex;
             let next = neighbors[cell][index_of(names, dropped)];
-            let back = place_of(a, b, c);
+            var back = place_of(a, b, c);
+            let way = way_through(ray, volume, area(a, b), front, back);
             // Rounding alone makes the ray turn back: then it stays where it is.
-            if back.distance > front.distance {
-                let begin = clamp((near - front.distance) / (back.distance - front.distance), 0.0, 1.0);
+            if way > 0.0 {
+                back.distance = max(back.distance, front.distance);
+                let begin = clamp((near - front.distance) / way, 0.0, 1.0);
                 let start = max(front.distance, near);
                 var segment: Segment;
-                segment.length = back.distance - start;
+                segment.length = select(way, back.distance - near, front.distance < near);
                 segment.at = at;
                 segment.front = in_cell(front.value + begin * (back.value - front.value), cell);
                 segment.back = in_cell(back.value, cell);
@@ -127,6 +131,7 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
                 }
                 front = back;
             }
+            front.area = back.area;
             if next == NONE || color.a >= march.opaque || is_hidden(depth_at(ray, front.distance), at) {
                 is_over = true;
                 break;

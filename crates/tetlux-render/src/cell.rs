@@ -26,12 +26,28 @@ pub(crate) struct Vertex {
     rest: Vec2,
 }
 
-/// The planes of the faces and the gradient of the scalar.
+/// The planes of the faces and the rise of the scalar.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cell {
     pub(crate) planes: [Vec4; 4],
-    pub(crate) gradient: Vec3,
+    pub(crate) rise: Vec3,
     pub(crate) kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    normal: Vec3,
+    turned: Vec3,
+    toward: f32,
+    reach: f32,
+    is_edge_on: bool,
+}
+
+/// A cell as its planes and fields need it.
+#[derive(Clone, Copy, Debug)]
+struct Leaning {
+    planes: [Vec4; 4],
+    rises: [Vec3; 4],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +74,7 @@ pub(crate) struct Segment {
 const DEEP_RATIO: f32 = 4.0;
 const STEEPEST: f32 = 1e20;
 const EDGE_ON: f32 = 1e-6;
+const ALONG: f32 = 0.25;
 
 impl Lens {
     pub(crate) fn vertex(&self, position: Vec3, seen: &Seen) -> Vertex {
@@ -96,109 +113,192 @@ impl Lens {
         [least.element_sum() + aside.element_sum(), sum + aside.abs().element_sum()]
     }
 
-    fn face_plane(&self, [a, b, c]: [&Vertex; 3], inward: f32, depth: f32, origin: &Vertex) -> Vec4 {
+    fn side_of(&self, [a, b, c]: [&Vertex; 3]) -> Side {
         let normal = face_normal(a.position, b.position, c.position);
         let n = self.rotated(normal);
-        let ([side, terms], scale, rise) = if self.orthographic {
+        let ([side, terms], scale) = if self.orthographic {
             let scale = n.x.abs() + n.y.abs();
-            ([n.z, scale], scale, self.view.pixel)
+            ([n.z, scale], scale)
         } else {
             let reach = a.eye.abs().max(b.eye.abs()).max(c.eye.abs()).max_element();
-            (self.side_of_eye([a, b, c], normal, n), n.abs().element_sum() * reach, depth * self.view.pixel)
+            (self.side_of_eye([a, b, c], normal, n), n.abs().element_sum() * reach)
         };
-        let edge_on = side.abs() <= EDGE_ON * terms;
-        let divisor = (if edge_on { 1e-12 * scale } else { side.abs() }).max(1e-30);
-        let toward = if side >= 0.0 { 1.0 } else { -1.0 };
-        let limit = |x: f32| x.clamp(-STEEPEST, STEEPEST);
-        let slope = (n.truncate() * (rise * toward / divisor)).map(limit);
-        let aside = (if edge_on { NUDGE } else { Vec2::ZERO }) - origin.rest;
-        let offset = normal.dot(origin.position - a.position) * toward / divisor + slope.dot(aside);
-        Vec4::new(slope.x, slope.y, limit(offset), toward * inward)
+        let is_edge_on = side.abs() <= EDGE_ON * terms;
+        let reach = (if is_edge_on { 1e-12 * scale } else { side.abs() }).max(1e-30);
+        Side { normal, turned: n, toward: if side >= 0.0 { 1.0 } else { -1.0 }, reach, is_edge_on }
+    }
+
+    fn face_plane(side: &Side, a: &Vertex, origin: &Vertex, rise: f32) -> Vec3 {
+        let slope = limited((side.turned.truncate() * (rise * side.toward / side.reach)).extend(0.0)).truncate();
+        let aside = (if side.is_edge_on { NUDGE } else { Vec2::ZERO }) - origin.rest;
+        let offset = side.normal.dot(origin.position - a.position) * side.toward / side.reach + slope.dot(aside);
+        slope.extend(offset.clamp(-STEEPEST, STEEPEST))
+    }
+
+    fn beside_edge(&self, a: &Vertex, b: &Vertex, kind: Kind) -> Vec2 {
+        if kind == Kind::Deep {
+            let edge = self.rotated(b.position - a.position);
+            return Vec2::new(a.eye.y * edge.z - a.eye.z * edge.y, a.eye.z * edge.x - a.eye.x * edge.z);
+        }
+        pixels_between(a, b).perp()
+    }
+
+    fn leaning(&self, v: &[Vertex; 4], kind: Kind, parity: f32) -> Leaning {
+        let sides = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]].map(|face| self.side_of(face.map(|i: usize| &v[i])));
+        let reference = reference_index(v, kind);
+        let a = &v[reference];
+        let rise = self.view.pixel * if self.orthographic { 1.0 } else { a.eye.z };
+        let (origin, step) = if kind == Kind::Deep {
+            (a, 0.0)
+        } else {
+            let step = self.deeper(&v[1], &v[0]);
+            (&v[1], if self.orthographic { step } else { step / v[1].eye.z })
+        };
+        let mut planes: [Vec3; 4] = std::array::from_fn(|i| match i {
+            0 => Lens::face_plane(&sides[0], &v[1], origin, rise),
+            _ => Lens::face_plane(&sides[i], &v[0], a, rise),
+        });
+        planes[0].z += step;
+        let mut lean = usize::from(reference == 0);
+        for i in lean + 1..4 {
+            if i != reference && sides[i].reach > sides[lean].reach {
+                lean = i;
+            }
+        }
+        let others: Vec<usize> = (0..4).filter(|&i| i != reference && i != lean).collect();
+        let (second, third) = (others[0], others[1]);
+        let [b, c] = [&v[second], &v[third]];
+        let side = &sides[lean];
+        let ways = [a, b, c].map(|vertex| v[lean].position - vertex.position);
+        let lengths = ways.map(|way| way.dot(way));
+        let mut way = ways[0];
+        if lengths[1] < lengths[0] {
+            way = ways[1];
+        }
+        if lengths[2] < lengths[0].min(lengths[1]) {
+            way = ways[2];
+        }
+        let volume = side.normal.dot(way).abs();
+        let mut found = Leaning { planes: [Vec4::ZERO; 4], rises: [Vec3::ZERO; 4] };
+        let (mut heights, mut along) = ([0.0; 4], [false; 4]);
+        for i in 0..4 {
+            let inward = if i % 2 == 0 { -parity } else { parity };
+            let front = sides[i].toward * inward;
+            found.planes[i] = planes[i].extend(front);
+            heights[i] = (volume / sides[i].reach).min(STEEPEST);
+            if i != reference {
+                let rate = sides[i].turned.truncate() * (rise * inward / volume.max(1e-30));
+                found.rises[i] = limited(rate.extend(front / heights[i].max(1.0 / STEEPEST)));
+            }
+            let [slope, apart] = [planes[lean], planes[i] - planes[lean]].map(|x| x.truncate().abs());
+            along[i] = apart.max_element() < ALONG * slope.max_element() && !sides[i].is_edge_on;
+        }
+        if (0..4).all(|i| i == lean || !along[i]) || side.is_edge_on {
+            return found;
+        }
+        let mut rates = [[b, c], [c, a], [a, b]].map(|[a, b]| self.beside_edge(a, b, kind));
+        if kind == Kind::Deep {
+            let is_between = second < reference && reference < third;
+            let scale = rise * side.toward / if is_between { -side.reach } else { side.reach };
+            rates = rates.map(|rate| rate * scale);
+        } else {
+            let area = rates[1].perp_dot(rates[2]);
+            let scale = 1.0 / if area >= 0.0 { area.max(1e-30) } else { area.min(-1e-30) };
+            rates = rates.map(|rate| rate * scale);
+            if !self.orthographic {
+                rates[1] *= a.eye.z / b.eye.z;
+                rates[2] *= a.eye.z / c.eye.z;
+            }
+        }
+        for i in 0..4 {
+            let front = found.planes[i].w;
+            let mut rate = Vec3::ZERO;
+            if i == second {
+                rate = rates[1].extend(-rates[1].dot(a.rest));
+            } else if i == third {
+                rate = rates[2].extend(-rates[2].dot(a.rest));
+            }
+            if i == lean {
+                found.planes[i].w = 2.0 * front;
+            } else if along[i] {
+                if i == reference {
+                    let here = if kind == Kind::Deep { 1.0 } else { rates[0].dot(pixels_between(b, origin)) };
+                    rate = rates[0].extend(here - rates[0].dot(origin.rest));
+                }
+                found.planes[i] = limited(rate * (heights[i] * front)).extend(3.0 * front);
+            }
+            if i != reference {
+                found.rises[i] = limited(rate.truncate().extend(found.rises[i].z));
+            }
+        }
+        found
     }
 
     pub(crate) fn project_cell(&self, v: &[Vertex; 4], s: [f32; 4], parity: f32) -> Cell {
-        let z = v.map(|vertex| vertex.eye.z);
-        let kind = self.cell_kind(z);
+        let kind = self.cell_kind(v.map(|vertex| vertex.eye.z));
         if kind == Kind::Hidden {
-            return Cell { planes: [Vec4::ZERO; 4], gradient: Vec3::ZERO, kind };
+            return Cell { planes: [Vec4::ZERO; 4], rise: Vec3::ZERO, kind };
         }
-        let reference = if kind == Kind::Deep { &v[farthest_vertex(z)] } else { &v[0] };
-        let depth = reference.eye.z;
-        let mut planes = [
-            self.face_plane([&v[1], &v[2], &v[3]], -parity, depth, if kind == Kind::Deep { reference } else { &v[1] }),
-            self.face_plane([&v[0], &v[2], &v[3]], parity, depth, reference),
-            self.face_plane([&v[0], &v[1], &v[3]], -parity, depth, reference),
-            self.face_plane([&v[0], &v[1], &v[2]], parity, depth, reference),
-        ];
-        if kind == Kind::Plain {
-            let step = self.deeper(&v[1], &v[0]);
-            planes[0].z += if self.orthographic { step } else { step / v[1].eye.z };
-        }
-        let e: [Vec3; 3] = std::array::from_fn(|i| v[i + 1].position - v[0].position);
-        let volume = e[0].dot(e[1].cross(e[2]));
-        let inverse = (if volume >= 0.0 { 1.0 } else { -1.0 }) / volume.abs().max(1e-30);
-        let sum =
-            (s[1] - s[0]) * e[1].cross(e[2]) + (s[2] - s[0]) * e[2].cross(e[0]) + (s[3] - s[0]) * e[0].cross(e[1]);
-        let gradient = self.rotated(sum * inverse).clamp(Vec3::splat(-STEEPEST), Vec3::splat(STEEPEST));
-        Cell { planes, gradient, kind }
+        let found = self.leaning(v, kind, parity);
+        let own = s[reference_index(v, kind)];
+        let [a, b, c, d] = std::array::from_fn(|i| found.rises[i] * (s[i] - own));
+        Cell { planes: found.planes, rise: limited(a + b + c + d), kind }
     }
 
     pub(crate) fn cell_reference(&self, v: &[Vertex; 4], s: [f32; 4], kind: Kind) -> Reference {
-        let far = farthest_vertex(v.map(|vertex| vertex.eye.z));
-        let (index, other) = if kind == Kind::Deep { (far, far) } else { (0, 1) };
+        let index = reference_index(v, kind);
         let r = &v[index];
         let (farthest, nearest) = bounds(v.map(|vertex| self.deeper(&vertex, r)));
         let w = [farthest, nearest.min(r.eye.z - self.view.near)]
             .map(|z| if self.orthographic { z } else { z / (r.eye.z - z).max(self.view.near) });
         let (low, high) = bounds(s);
-        Reference {
-            origins: [v[index].pixel, v[other].pixel],
-            rest: r.rest,
-            depth: r.eye.z,
-            level: r.frame.z,
-            scalar: s[index],
-            w,
-            s: [low, high],
-        }
+        let origins = [r.pixel, if kind == Kind::Deep { r.pixel } else { v[1].pixel }];
+        let (rest, depth, level, scalar) = (r.rest, r.eye.z, r.frame.z, s[index]);
+        Reference { origins, rest, depth, level, scalar, w, s: [low, high] }
     }
 
     /// The segment of the ray through `at`, in pixels from the picture's middle; `None` where it misses the cell.
     #[inline]
     pub(crate) fn cell_segment(&self, cell: &Cell, reference: &Reference, at: Vec2) -> Option<Segment> {
         let from = reference.origins.map(|origin| at - origin);
-        let [mut back, mut front] = reference.w;
+        let w: [f32; 4] = std::array::from_fn(|i| {
+            let plane = cell.planes[i];
+            Vec2::new(plane.x, plane.y).dot(from[usize::from(i == 0)]) + plane.z
+        });
+        let marks = cell.planes.map(|plane| plane.w.abs());
+        let lean = (0..4).find(|&i| marks[i] == 2.0).map_or(0.0, |i| w[i]);
+        let (mut front, mut back) = (reference.w[1] - lean, reference.w[0] - lean);
         for (i, plane) in cell.planes.iter().enumerate() {
-            let from = from[usize::from(i == 0)];
-            let w = plane.x * from.x + plane.y * from.y + plane.z;
+            let beyond = w[i] - if marks[i] > 2.0 { 0.0 } else { lean };
             if plane.w > 0.0 {
-                front = front.min(w);
+                front = front.min(beyond);
             } else {
-                back = back.max(w);
+                back = back.max(beyond);
             }
         }
         // Also where either is NaN.
         if front.partial_cmp(&back) != Some(std::cmp::Ordering::Greater) {
             return None;
         }
-        let across = from[0] * self.view.pixel;
-        let gradient = cell.gradient;
-        let rounded_by = gradient.truncate().dot(reference.rest) * self.view.pixel;
-        let rounded_by = rounded_by * if self.orthographic { 1.0 } else { reference.depth };
-        let scalar = reference.scalar - rounded_by;
-        let in_plane = gradient.truncate().dot(across);
-        let (length, s, depth) = if self.orthographic {
-            let s = [front, back].map(|w| scalar + in_plane - w * gradient.z);
-            (front - back, s, reference.level - 0.5 * (front + back))
+        let [near, far] = [front, back].map(|beyond| lean + beyond);
+        let (length, shares, closer) = if self.orthographic {
+            (front - back, [1.0; 2], near + far)
         } else {
-            let direction = (at * self.view.pixel).extend(1.0);
-            let along = gradient.dot(direction);
-            let s = [front, back].map(|w| scalar + reference.depth * (in_plane - w / (1.0 + w) * along));
-            let closer = front / (1.0 + front) + back / (1.0 + back);
-            let length = direction.length() * reference.depth * (front - back) / ((1.0 + front) * (1.0 + back));
-            (length, s, reference.level - 0.5 * reference.depth * closer)
+            let shares = [near, far].map(|w| 1.0 / (1.0 + w));
+            let stretch = (at * self.view.pixel).extend(1.0).length() * reference.depth;
+            (
+                (front - back) * (stretch * shares[0] * shares[1]),
+                shares,
+                reference.depth * (near * shares[0] + far * shares[1]),
+            )
         };
-        let [s_front, s_back] = s.map(|s| s.clamp(reference.s[0], reference.s[1]));
-        Some(Segment { s_front, s_back, length, depth })
+        let aside = cell.rise.truncate().dot(from[0]);
+        let scalar = reference.scalar - cell.rise.truncate().dot(reference.rest);
+        let s = |beyond: f32, share: f32| {
+            (scalar + (aside - cell.rise.z * beyond) * share).clamp(reference.s[0], reference.s[1])
+        };
+        let (s_front, s_back) = (s(front, shares[0]), s(back, shares[1]));
+        Some(Segment { s_front, s_back, length, depth: reference.level - 0.5 * closer })
     }
 
     /// Pixel bounds of what is seen of a cell, from the picture's middle.
@@ -231,7 +331,7 @@ fn rest_of(seen: &Seen) -> Vec2 {
     share * (Vec2::from(seen.pixel).abs() * UNIT as f32)
 }
 
-fn face_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
+pub(crate) fn face_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
     let (ab, ac, bc) = (b - a, c - a, c - b);
     let squares = [ab, ac, bc].map(|edge| edge.dot(edge));
     if squares[0] > squares[1].max(squares[2]) {
@@ -243,14 +343,24 @@ fn face_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
     }
 }
 
-fn farthest_vertex(z: [f32; 4]) -> usize {
-    let mut far = 0;
-    for i in 1..4 {
-        if z[i] > z[far] {
-            far = i;
+fn pixels_between(a: &Vertex, b: &Vertex) -> Vec2 {
+    (b.pixel - a.pixel) + (b.rest - a.rest)
+}
+
+fn reference_index(v: &[Vertex; 4], kind: Kind) -> usize {
+    let mut index = 0;
+    if kind == Kind::Deep {
+        for i in 1..4 {
+            if v[i].eye.z > v[index].eye.z {
+                index = i;
+            }
         }
     }
-    far
+    index
+}
+
+fn limited(x: Vec3) -> Vec3 {
+    x.clamp(Vec3::splat(-STEEPEST), Vec3::splat(STEEPEST))
 }
 
 fn bounds(x: [f32; 4]) -> (f32, f32) {

@@ -6,10 +6,6 @@ use tetlux_tests::{Convex, mesh_of, perspective, scene, white};
 
 use crate::{TOLERANCE, assert_white};
 
-/// In a view 179.9 degrees high a ray goes 1146 times as far aside as ahead, and scalars, found from the depth of the cell's
-/// farthest vertex, lose three digits of their seven.
-const WIDE: f64 = 1e-4;
-
 #[test]
 fn wide_views_are_not_cut_by_the_depth_that_is_not_asked_for() {
     // A thousandth of the mesh aside at a millionth of it ahead was behind a near plane that no one had asked for.
@@ -17,12 +13,13 @@ fn wide_views_are_not_cut_by_the_depth_that_is_not_asked_for() {
     let field = |p: DVec3| p.x + 0.5 * p.y + 1.5 * p.z;
     let mesh = mesh_of(&cuboid([3; 3], Split::Six, bounds), field);
     let eye = DVec3::new(1.3, 1.55, 1.21);
-    for (view_angle, tolerance) in [(150.0, TOLERANCE), (179.0, TOLERANCE), (179.9, WIDE)] {
+    // Of 179.99 degrees a ray goes 10 000 times as far aside as ahead: scalars lost four digits of their seven.
+    for view_angle in [150.0, 179.0, 179.9, 179.99] {
         for direction in [DVec3::new(0.9, 0.3, -0.2), DVec3::NEG_Y, DVec3::new(1.0, 1.0, 1.0)] {
             let camera = perspective(eye, eye + direction, view_angle);
             let scene = scene(&mesh, white(&[[0.0, 0.1], [2.0, 0.5], [3.0, 0.2], [9.0, 1.0]]), camera, [25, 22]);
             let what = format!("{view_angle} degrees along {direction}");
-            assert_white(&what, &mesh, &scene, &Convex::cuboid(bounds), field, tolerance);
+            assert_white(&what, &mesh, &scene, &Convex::cuboid(bounds), field, TOLERANCE);
         }
     }
 }

@@ -8,6 +8,7 @@
 
 mod classes;
 mod close_to_the_eye;
+mod coverage;
 mod cycles;
 mod extremes;
 mod eye_inside;

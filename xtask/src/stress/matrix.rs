@@ -52,21 +52,6 @@ fn methods(short: bool) -> Vec<&'static Row> {
     OURS.iter().chain(published).collect()
 }
 
-/// Cases in which single precision does not keep what is promised elsewhere, and why: what fails there is told as failed,
-/// and that it fails is expected.
-const LIMITS: [(&str, &str); 2] = [
-    (
-        "film",
-        "on a graphics adapter single precision knows where a ray meets the two sides of a film to 6e-8 of the cell's depth in the view, and what lies \
-         between them is dense in proportion: an error of about 1e-7 times the width of a cell over the film's thickness",
-    ),
-    (
-        "view-of-179-99",
-        "a ray 10 000 times as far aside as ahead is followed from the depth of the cell's farthest vertex, 10 000 widths \
-         aside: scalars lose four digits of their seven",
-    ),
-];
-
 /// What became of a method on a case.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -105,7 +90,7 @@ pub(super) fn run(stress: &Stress) -> Result<Section> {
         say!("{}", page::said(&line, &methods));
         lines.push(line);
     }
-    let failures = lines.iter().flat_map(|line| unexpected(line, failures(line, &methods))).collect();
+    let failures = lines.iter().flat_map(|line| failures(line, &methods)).collect();
     let names: Vec<_> = methods.iter().map(|(name, _)| name.replace('`', "")).collect();
     Ok(Section {
         title: "Every method on every case",
@@ -199,27 +184,6 @@ fn failures(line: &Line, methods: &[&Row]) -> Vec<String> {
     failures
 }
 
-/// The failures of a case that none are known of; if of a known one there is no failure, that.
-fn unexpected(line: &Line, failures: Vec<String>) -> Vec<String> {
-    let known = LIMITS.iter().any(|(case, _)| *case == line.case);
-    match failures.is_empty() {
-        true if known => {
-            vec![format!("{}: keeps what is promised, and is said not to: take it from the limits", line.case)]
-        }
-        false if known && line.outcomes.iter().all(|outcome| !is_worse_than_wrong(outcome)) => Vec::new(),
-        _ => failures,
-    }
-}
-
-/// No limit of precision makes a method end in an error, nor a value that is none.
-fn is_worse_than_wrong(outcome: &Outcome) -> bool {
-    match outcome {
-        Outcome::Drawn(verdict) => verdict.not_finite > 0,
-        Outcome::Broke(_) => true,
-        Outcome::Refused(_) => false,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -239,28 +203,6 @@ mod tests {
             change(&mut method);
             assert_eq!(method.refusal(), None, "{name}");
         }
-    }
-
-    #[test]
-    fn a_known_limit_may_be_wrong_and_no_more() {
-        let methods = methods(false);
-        let good = Count { lit: 4, judged: 4, thin: 0 };
-        let found = |case: &'static str, outcome: Outcome| {
-            let mut outcomes = vec![Outcome::Drawn(Verdict::default()); methods.len()];
-            outcomes[0] = outcome;
-            let line = Line { case, ..line(Some(good), outcomes) };
-            unexpected(&line, failures(&line, &methods)).len()
-        };
-        let wrong = || Outcome::Drawn(Verdict { max: 0.1, ..Verdict::default() });
-        let nan = Outcome::Drawn(Verdict { not_finite: 1, ..Verdict::default() });
-        for (case, _) in LIMITS {
-            assert!(geometry::CASES.iter().chain(optics::CASES).any(|other| other.name == case), "{case}");
-            assert_eq!(found(case, wrong()), 0);
-            assert_eq!(found(case, nan.clone()), 1);
-            assert_eq!(found(case, Outcome::Broke("panicked".into())), 1);
-            assert_eq!(found(case, Outcome::Drawn(Verdict::default())), 1, "a limit that is none is told");
-        }
-        assert_eq!((found("cube", wrong()), found("cube", Outcome::Drawn(Verdict::default()))), (1, 0));
     }
 
     fn line(pixels: Option<Count>, outcomes: Vec<Outcome>) -> Line {

@@ -4,6 +4,7 @@ use tetlux_mesh::{Component, Field};
 use tetlux_scene::View;
 
 use super::*;
+use crate::cell::face_normal;
 use crate::device_view::DeviceView;
 
 fn corner(name: u32, x: f32, y: f32) -> Corner {
@@ -51,6 +52,56 @@ fn a_ray_on_a_vertex_crosses_one_of_the_triangles_around_it() {
         });
         assert_eq!(crossed.count(), 1);
     }
+}
+
+/// The shader's `volume_of`, of positions.
+fn volume_of([a, b, c]: [Vec3; 3], apex: Vec3) -> f32 {
+    let ways = [a, b, c].map(|corner| apex - corner);
+    let lengths = ways.map(|way| way.dot(way));
+    let mut way = ways[0];
+    if lengths[1] < lengths[0] {
+        way = ways[1];
+    }
+    if lengths[2] < lengths[0].min(lengths[1]) {
+        way = ways[2];
+    }
+    face_normal(a, b, c).dot(way).abs()
+}
+
+/// The shader's, of the distances and the areas of the two places.
+fn way_through(along: Vec3, volume: f32, beside: f32, front: [f32; 2], back: [f32; 2]) -> f32 {
+    const THIN: f32 = 0.0625;
+    const DISTANCE_ROUNDING: f32 = 3e-5;
+    let difference = back[0] - front[0];
+    if front[1].min(back[1]) <= 0.0 {
+        return difference;
+    }
+    let way = along.length() * (volume / front[1]) * (beside / back[1]);
+    let unsure = DISTANCE_ROUNDING * front[0].abs().max(back[0].abs());
+    let is_thin = way * way < THIN * THIN * front[1];
+    if is_thin && (way - difference).abs() < unsure { way } else { difference }
+}
+
+#[test]
+fn the_way_through_a_thin_cell_keeps_its_digits() {
+    // Parallel rays along z at the origin; a triangle aslant, and an apex a millionth behind its first vertex.
+    let [a, b, c] = [Vec3::new(-0.3, -0.2, 1.6), Vec3::new(0.4, -0.1, 1.9), Vec3::new(0.05, 0.5, 1.7)];
+    let apex = a + Vec3::new(0.0, 0.0, 1e-6);
+    let as_seen = |name: u32, p: Vec3| Corner { name, offset: p.truncate(), distance: p.z };
+    let [p, q, r, s] = [as_seen(0, a), as_seen(1, b), as_seen(2, c), as_seen(3, apex)];
+    let area = |a: &Corner, b: &Corner, c: &Corner| (b.offset - a.offset).perp_dot(c.offset - a.offset);
+    let (front, back) = ([distance_of(&p, &q, &r), area(&p, &q, &r)], [distance_of(&s, &q, &r), area(&s, &q, &r)]);
+    let beside = q.offset.perp_dot(r.offset);
+    // The share of the first vertex in what is interpolated at the origin, of the height there.
+    let exact = f64::from(beside) / f64::from(front[1]) * (f64::from(apex.z) - f64::from(a.z));
+    let off = |found: f32| (f64::from(found) / exact - 1.0).abs();
+    let volume = volume_of([a, b, c], apex);
+    // Some roundings; the difference of distances about 2 has but a digit.
+    assert!(off(way_through(Vec3::Z, volume, beside, front, back)) < 1e-6);
+    assert!(off(back[0] - front[0]) > 1e-3);
+    // Elsewhere that is the way: where the triangles are seen narrow, and where the ray is not in them.
+    assert_eq!(way_through(Vec3::Z, volume, beside, [front[0], 0.0], back), back[0] - front[0]);
+    assert_eq!(way_through(Vec3::Z, volume, beside, front, [2.5, back[1]]), 2.5 - front[0]);
 }
 
 /// A row of four cubes along x, seen along it, four pixels wide and high.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::judge::{BESIDE, CLEAN, Verdict};
-use super::{LIMITS, Line, OURS, Outcome};
+use super::{Line, OURS, Outcome};
 use crate::bench::table::{markdown as table, number};
 use crate::methods::Row;
 
@@ -54,13 +54,7 @@ pub(super) fn markdown(lines: &[Line], methods: &[&Row]) -> String {
         let has_thin = |line: &Line| line.pixels.is_some_and(|pixels| pixels.thin > 0);
         page += &errors(lines, methods, &columns, has_thin, |verdict| verdict.thin);
     }
-    page + &limits(lines) + &refusals(lines, methods)
-}
-
-fn limits(lines: &[Line]) -> String {
-    let known = LIMITS.iter().filter(|(case, _)| lines.iter().any(|line| line.case == *case));
-    let text: String = known.map(|(case, why)| format!("- **Failed**: {case}: {why}.\n")).collect();
-    if text.is_empty() { text } else { format!("\n### Known limits\n\n{text}") }
+    page + &refusals(lines, methods)
 }
 
 fn cases(lines: &[Line]) -> String {
