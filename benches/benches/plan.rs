@@ -15,8 +15,8 @@ use tetlux_scene::{Backend, Order, Planner, Scene, SceneFile, Skip};
 const WING: &str = include_str!("../../scenes/wing.toml");
 const POST: [&str; 2] = [include_str!("../../scenes/post-smooth.toml"), include_str!("../../scenes/post-spiky.toml")];
 
-/// What comes before the first cell is set up: what a frame of the same function does not need again.
-const BEFORE: [&str; 3] = ["facts", "order", "prepare"];
+/// What comes before the first cell is set up.
+const BEFORE: [&str; 4] = ["facts", "order", "prepare", "project"];
 
 fn plans(c: &mut Criterion, name: &str, mesh: &TetMesh, scenes: [&Scene; 2]) {
     let (renderer, model, planner) = (Renderer::new(), Model::new(mesh), Planner::new(mesh));

@@ -64,10 +64,10 @@ fn rest(cell: &[u32; 4], place: usize) -> [u32; 2] {
 /// Vertices whose half-faces one thread matches in one go.
 const VERTICES: usize = 4096;
 
-/// Lists of pairs of half-faces, and the number of faces that three or more cells share (these stay unpaired).
+/// The pairs of half-faces, and the number of faces that three or more cells share (these stay unpaired).
 ///
 /// A counting sort puts the half-faces with the same smallest vertex together; these are compared with one another.
-pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Vec<Pair>>, usize) {
+pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Pair>, usize) {
     let mut starts = vec![0u32; points + 2];
     for cell in cells {
         // The face opposite the smallest vertex has the next one for its smallest, the others have the smallest.
@@ -95,11 +95,20 @@ pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Vec<Pair>>, 
         *of_next += 1;
     }
 
-    let matched = (0..points.div_ceil(VERTICES)).into_par_iter().map(|chunk| {
-        let first = chunk * VERTICES;
+    // One piece of memory: so many small ones are not given back to the system.
+    let mut pairs = vec![Pair([0; 2]); 2 * cells.len()];
+    let mut room = &mut pairs[..];
+    let mut shares = Vec::new();
+    for first in (0..points).step_by(VERTICES) {
         let starts = &starts[first..points.min(first + VERTICES) + 1];
-        let half_faces = (starts[starts.len() - 1] - starts[0]) as usize;
-        let (mut pairs, mut non_manifold, mut bucket) = (Vec::with_capacity(half_faces / 2), 0, Vec::new());
+        // As many as there may be: no two shares have a place in common.
+        let [from, to] = [starts[0], starts[starts.len() - 1]].map(|half_face| half_face.div_ceil(2) as usize);
+        let (share, after) = std::mem::take(&mut room).split_at_mut(to - from);
+        shares.push((starts, share));
+        room = after;
+    }
+    let matched = shares.into_par_iter().map(|(starts, share)| {
+        let (mut non_manifold, mut bucket, mut pairs) = (0, Vec::new(), Vec::with_capacity(share.len()));
         for ends in starts.windows(2) {
             let half_face =
                 |&side: &u32| HalfFace { rest: rest(&cells[(side >> 3) as usize], (side & 3) as usize), side };
@@ -107,10 +116,17 @@ pub(crate) fn face_pairs(points: usize, cells: &[[u32; 4]]) -> (Vec<Vec<Pair>>, 
             bucket.extend(sides[ends[0] as usize..ends[1] as usize].iter().map(half_face));
             non_manifold += match_faces(&mut bucket, &mut pairs);
         }
-        (pairs, non_manifold)
+        share[..pairs.len()].copy_from_slice(&pairs);
+        (share.len(), pairs.len(), non_manifold)
     });
-    let (pairs, non_manifold): (Vec<Vec<Pair>>, Vec<usize>) = matched.unzip();
-    (pairs, non_manifold.into_iter().sum())
+    let matched: Vec<(usize, usize, usize)> = matched.collect();
+    let (mut from, mut kept, mut non_manifold) = (0, 0, 0);
+    for (places, count, shared) in matched {
+        pairs.copy_within(from..from + count, kept);
+        (from, kept, non_manifold) = (from + places, kept + count, non_manifold + shared);
+    }
+    pairs.truncate(kept);
+    (pairs, non_manifold)
 }
 
 /// Half-faces of one smallest vertex above which they are sorted: each is compared with all others else.
@@ -145,9 +161,9 @@ fn match_faces(bucket: &mut [HalfFace], pairs: &mut Vec<Pair>) -> usize {
 }
 
 /// The neighbour table of the pairs that `keep` accepts.
-pub(crate) fn neighbors(cells: usize, pairs: &[Vec<Pair>], keep: impl Fn(&Pair) -> bool) -> Vec<[u32; 4]> {
+pub(crate) fn neighbors(cells: usize, pairs: &[Pair], keep: impl Fn(&Pair) -> bool) -> Vec<[u32; 4]> {
     let mut table = vec![[NONE; 4]; cells];
-    for pair in pairs.iter().flatten().filter(|p| keep(p)) {
+    for pair in pairs.iter().filter(|p| keep(p)) {
         let (cells, faces) = (pair.cells(), pair.faces());
         for side in 0..2 {
             table[cells[side] as usize][faces[side] as usize] = cells[1 - side];

@@ -109,11 +109,9 @@ impl TetMesh {
         let (mut pairs, non_manifold) = face_pairs(points.len(), &tets);
         assembly.faces_non_manifold = non_manifold;
         if assembly.cells_flat > 0 {
-            let mut all = pairs.concat();
-            orient_flat(&mut tets, &signs, &mut all);
-            pairs = vec![all];
+            orient_flat(&mut tets, &signs, &mut pairs);
         }
-        assembly.faces_folded = pairs.iter().flatten().filter(|p| p.same_way()).count();
+        assembly.faces_folded = pairs.iter().filter(|p| p.same_way()).count();
         let neighbors = neighbors(tets.len(), &pairs, |p| !p.same_way());
         Ok(TetMesh { origin, points, cells: tets, neighbors, fields, assembly })
     }

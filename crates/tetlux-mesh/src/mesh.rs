@@ -64,11 +64,8 @@ impl TetMesh {
 
     /// Corners of the bounding box relative to [`origin`](Self::origin).
     pub fn local_bounds(&self) -> [DVec3; 2] {
-        let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        for p in &self.points {
-            bounds = [bounds[0].min(p.as_dvec3()), bounds[1].max(p.as_dvec3())];
-        }
-        bounds
+        let around = |[low, high]: [Vec3; 2], p: &Vec3| [low.min(*p), high.max(*p)];
+        self.points.iter().fold([Vec3::INFINITY, Vec3::NEG_INFINITY], around).map(|corner| corner.as_dvec3())
     }
 
     /// Corners of the bounding box in world space.
@@ -111,16 +108,19 @@ impl TetMesh {
 
     /// Smallest and largest scalar of each cell; NaN in both where a value is missing.
     pub fn scalar_ranges(&self, scalar: &ScalarField) -> Vec<[f64; 2]> {
-        let range = |values: [f64; 4]| {
-            if values.iter().all(|v| v.is_finite()) {
-                [values.into_iter().fold(f64::INFINITY, f64::min), values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
-            } else {
-                [f64::NAN; 2]
-            }
+        (0..self.cells.len()).into_par_iter().map(|cell| self.scalar_range(scalar, cell)).collect()
+    }
+
+    /// Smallest and largest scalar of one cell; NaN in both where a value is missing.
+    pub fn scalar_range(&self, scalar: &ScalarField, cell: usize) -> [f64; 2] {
+        let values = match scalar.location {
+            Location::Point => self.cells[cell].map(|v| scalar.values[v as usize]),
+            Location::Cell => [scalar.values[cell]; 4],
         };
-        match scalar.location {
-            Location::Point => self.cells.par_iter().map(|c| range(c.map(|v| scalar.values[v as usize]))).collect(),
-            Location::Cell => scalar.values.par_iter().map(|&v| range([v; 4])).collect(),
+        if values.iter().all(|v| v.is_finite()) {
+            [values.into_iter().fold(f64::INFINITY, f64::min), values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+        } else {
+            [f64::NAN; 2]
         }
     }
 

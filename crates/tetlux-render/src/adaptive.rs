@@ -7,7 +7,7 @@ use tetlux_mesh::TetMesh;
 use tetlux_optics::transfer_f32::{Piece, piece_at};
 use tetlux_scene::View;
 
-use crate::device_mesh::{DeviceMesh, NEGATIVE};
+use crate::device_mesh::{DeviceMesh, NEGATIVE, ascending};
 
 /// The cells of `order`, each as often as it meets pieces, and the piece of each: nearest first if `order` is.
 ///
@@ -21,7 +21,7 @@ pub(crate) fn entries(
     order: &[u32],
 ) -> (Vec<u32>, Vec<u32>) {
     let cut = |&cell: &u32| -> Vec<(u32, u32)> {
-        let names = device.cells[cell as usize].map(|v| (v & !NEGATIVE) as usize);
+        let names = ascending(mesh.cells()[cell as usize]).map(|v| (v & !NEGATIVE) as usize);
         let scalars = match device.own_scalar(cell) {
             Some(s) => [s; 4],
             None => names.map(|v| device.points[v][3]),

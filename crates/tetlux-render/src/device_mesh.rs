@@ -1,12 +1,12 @@
 //! The mesh as devices have it: scaled, single precision, vertices in ascending order.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use tetlux_mesh::{Location, ScalarField, TetMesh};
 use tetlux_optics::no_data_f32::NO_DATA;
 use tetlux_optics::transfer_f32::normalise;
 
-/// In the first vertex of a device cell: the ascending order of the vertices is negatively oriented.
+/// In the first of a cell's [`ascending`] vertices: in that order they are negatively oriented.
 pub(crate) const NEGATIVE: u32 = 1 << 31;
 
 /// In the place of a cell's scalar: those of its points.
@@ -34,15 +34,13 @@ impl Data {
     }
 }
 
-/// A mesh and one of its scalars, in device units.
+/// A mesh's points and one of its scalars, in device units. Its cells devices take as [`ascending`] gives them.
 #[derive(Debug, Clone)]
 pub(crate) struct DeviceMesh {
     /// Device units per world unit: a power of two, so that scaling is exact.
     pub(crate) scale: f64,
     /// Positions relative to the mesh's origin, and the normalised scalar (0 for cell data).
     pub(crate) points: Vec<[f32; 4]>,
-    /// Vertices in ascending order, [`NEGATIVE`] in the first.
-    pub(crate) cells: Vec<[u32; 4]>,
     /// The normalised scalar of each cell, or [`NO_DATA`], or [`OF_POINTS`]; empty if all have those of their points.
     pub(crate) cell_scalars: Vec<f32>,
     pub(crate) data: Data,
@@ -56,27 +54,21 @@ impl DeviceMesh {
     pub(crate) fn new(mesh: &TetMesh, scalar: &ScalarField, without: &[&ScalarField]) -> DeviceMesh {
         let bounds = mesh.local_bounds();
         let scale = unit_scale((bounds[1] - bounds[0]).max_element());
-        let normalise = |s: f64| normalised(scalar, s) as f32;
         let data = Data::of(scalar, without);
         let at_points = data != Data::Cell;
-        let points = mesh
-            .points()
-            .par_iter()
-            .enumerate()
-            .map(|(i, p)| {
-                let [x, y, z] = (p.as_dvec3() * scale).as_vec3().to_array();
-                [x, y, z, if at_points { normalise(scalar.values[i]) } else { 0.0 }]
-            })
-            .collect();
+        let point = |(i, p): (usize, &Vec3)| {
+            let [x, y, z] = (p.as_dvec3() * scale).as_vec3().to_array();
+            [x, y, z, if at_points { normalised(scalar, scalar.values[i]) as f32 } else { 0.0 }]
+        };
+        let points = mesh.points().par_iter().enumerate().map(point).collect();
         let cell_scalar = |cell: usize| match at_points {
             _ if without.iter().any(|scalar| is_missing(mesh, scalar, cell)) => NO_DATA,
             true => OF_POINTS,
-            false => normalise(scalar.values[cell]),
+            false => normalised(scalar, scalar.values[cell]) as f32,
         };
         let own = if data == Data::Point { 0 } else { mesh.cells().len() };
         let cell_scalars = (0..own).into_par_iter().map(cell_scalar).collect();
-        let cells = mesh.cells().par_iter().map(|&cell| ascending(cell)).collect();
-        DeviceMesh { scale, points, cells, cell_scalars, data, bounds: bounds.map(|corner| corner * scale) }
+        DeviceMesh { scale, points, cell_scalars, data, bounds: bounds.map(|corner| corner * scale) }
     }
 
     /// The scalar that a cell has throughout; `None` if it has those of its points.
@@ -104,7 +96,7 @@ fn unit_scale(width: f64) -> f64 {
 }
 
 /// The vertices of a positively oriented cell in ascending order, marked if that takes an odd permutation.
-fn ascending(mut cell: [u32; 4]) -> [u32; 4] {
+pub(crate) fn ascending(mut cell: [u32; 4]) -> [u32; 4] {
     let mut odd = false;
     for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
         if cell[i] > cell[j] {

@@ -291,7 +291,7 @@ impl Gpu {
         let stage = u64::from(limits.max_storage_buffers_per_shader_stage);
         for (what, needed, unit, limit) in [
             ("the mesh's points", size_of_val(&job.mesh.points[..]) as u64, "bytes", binding),
-            ("the mesh's cells", size_of_val(&job.mesh.cells[..]) as u64, "bytes", binding),
+            ("the mesh's cells", size_of_val(job.cells) as u64, "bytes", binding),
             ("the vertices' luminance and extinction", size_of_val(job.attributes) as u64, "bytes", binding),
             ("the points as they are seen", size_of_val(job.seen) as u64, "bytes", binding),
             ("the transfer function", size_of_val(job.pieces) as u64, "bytes", binding),

@@ -121,6 +121,8 @@ pub struct Frame {
 /// What a picture is made of.
 struct Job<'a> {
     mesh: &'a Arc<DeviceMesh>,
+    /// The mesh's cells, positively oriented.
+    cells: &'a [[u32; 4]],
     scalar: &'a ScalarField,
     view: DeviceView,
     eye: EyeSpace,
@@ -297,8 +299,8 @@ impl Renderer {
         let eye = EyeSpace::new(view, mesh, &device_mesh);
         let longest = || tables::largest_thickness(mesh, &plan.cells) * device_mesh.scale;
         let published = Published::new(plan, &tables, longest);
-        let [low, high] = mesh.local_bounds();
-        let across = low.distance(high) * device_mesh.scale;
+        let [low, high] = device_mesh.bounds;
+        let across = low.distance(high);
         let on_cpu = attributes.as_ref().filter(|_| plan.backend == Backend::Cpu);
         let look =
             Look::new(scene, mesh.points().len(), &eye, (&pieces, weights), on_cpu, extinction, published, across)?;
@@ -313,6 +315,7 @@ impl Renderer {
         let opaque = opaque(plan.hidden, &pieces, look.as_ref(), backdrop.as_ref());
         let job = Job {
             mesh: &device_mesh,
+            cells: mesh.cells(),
             scalar: &scene.scalar,
             view: lens.view,
             eye,

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec2Swizzles, Vec3};
 use rayon::prelude::*;
 use tetlux_mesh::{NONE, TetMesh};
 
-use crate::device_mesh::{DeviceMesh, NEGATIVE};
+use crate::device_mesh::{DeviceMesh, NEGATIVE, ascending};
 use crate::lens::{Lens, NUDGE};
 
 /// Rows of pixels whose entries one core finds at a time.
@@ -62,7 +62,7 @@ impl March {
                 let neighbors = neighbors[cell as usize];
                 (0..4).filter(move |&k| neighbors[k] == NONE).map(move |k| (cell, k))
             })
-            .filter_map(|(cell, k)| Face::new(device, lens, cell, k, size))
+            .filter_map(|(cell, k)| Face::new(mesh, device, lens, cell, k, size))
             .collect();
         let (starts, entries) = entries(lens, &faces, size);
         March { neighbors, starts, entries }
@@ -85,8 +85,8 @@ fn neighbors_of(mesh: &TetMesh, is_drawn: &[bool], cell: usize) -> [u32; 4] {
 
 impl Face {
     /// The face opposite vertex `k` of a cell; `None` if no pixel's ray can cross it.
-    fn new(device: &DeviceMesh, lens: &Lens, cell: u32, k: usize, size: [u32; 2]) -> Option<Face> {
-        let names = device.cells[cell as usize];
+    fn new(mesh: &TetMesh, device: &DeviceMesh, lens: &Lens, cell: u32, k: usize, size: [u32; 2]) -> Option<Face> {
+        let names = ascending(mesh.cells()[cell as usize]);
         let negative = names[0] & NEGATIVE != 0;
         let mut others = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][k].map(|i| names[i] & !NEGATIVE);
         if k.is_multiple_of(2) != negative {

@@ -30,7 +30,8 @@ pub fn bytes_saved(scene: &Scene, mesh: &TetMesh, plan: &Plan, line: &SkipLine) 
         Skip::Gradients => of_mesh(24, 0),
         // The default table.
         Skip::Tables => 4 * TableSpec::default_q().size.map(u64::from).iter().product::<u64>(),
-        Skip::Uploads => of_mesh(16, if data == Data::Point { 16 } else { 20 }),
+        // Points; the cells' vertices for graphics adapters alone; the cells' own scalars.
+        Skip::Uploads => of_mesh(16, if gpu { 16 } else { 0 } + if data == Data::Point { 0 } else { 4 }),
         _ => 0,
     }
 }

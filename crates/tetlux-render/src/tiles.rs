@@ -85,8 +85,7 @@ fn draw_on(level: Level, job: &Job, chunks: &mut Vec<Chunk>, stages: &mut Stages
         further: &[],
     };
     let points = stages.run("project", || set_up::points(job.mesh, job.scalar, eye));
-    let set_up =
-        SetUp { mesh: job.mesh, points: &points, eye, pieces: job.pieces, cut_all: light.cut_all, size: job.size };
+    let set_up = SetUp::new(job, &points, light.cut_all);
     let columns = bins::tiles(job.size)[0] as usize;
     let fields = job.look.as_ref().map_or(&[][..], |look| &look.further);
     let mut canvas = Canvas::new(job.size);

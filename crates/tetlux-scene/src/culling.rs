@@ -117,13 +117,13 @@ fn larger(a: f32, b: f32) -> f32 {
 }
 
 /// The largest single-precision number that is not above a value.
-fn below(value: f64) -> f32 {
+pub(crate) fn below(value: f64) -> f32 {
     let single = value as f32;
     if f64::from(single) > value { single.next_down() } else { single }
 }
 
 /// The smallest one that is not below it.
-fn above(value: f64) -> f32 {
+pub(crate) fn above(value: f64) -> f32 {
     let single = value as f32;
     if f64::from(single) < value { single.next_up() } else { single }
 }

@@ -35,6 +35,7 @@ mod method;
 mod one_peak;
 mod plan;
 mod planner;
+mod ranges;
 mod reason;
 mod skip;
 mod surface;

@@ -1,6 +1,6 @@
 //! The cells that a picture draws, and what is known of a mesh from its last one.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,29 +9,23 @@ use tetlux_optics::Classification;
 use tetlux_optics::widget::Rectangle;
 
 use crate::budget::Measures;
+use crate::ranges::{Intervals, Ranges};
 use crate::verdict::{Verdict, Verdicts};
 use crate::{CellBoxes, Device, Plan, Scene, SceneError, Skip, SkipSet, View};
 
-/// Makes plans for pictures of one mesh. What depends on the field alone, or on the camera alone, is found again only when
-/// that changes: a new transfer function on a loaded mesh asks every cell for its range, and no more.
+/// Makes plans for pictures of one mesh. What depends on the mesh, the field or the camera alone is found again only when
+/// that changes: a new transfer function on a loaded mesh asks for the ranges of the cells, and no more.
 #[derive(Debug)]
 pub struct Planner<'a> {
     mesh: &'a TetMesh,
-    /// Diagonal of the mesh's bounding box.
-    diagonal: f64,
+    /// The mesh's bounding box, relative to its origin.
+    bounds: [DVec3; 2],
+    /// Cells of no volume, ascending.
+    flat: OnceLock<Vec<u32>>,
     first: Mutex<Option<Arc<Ranges>>>,
     second: Mutex<Option<Arc<Ranges>>>,
     boxes: Mutex<Option<Arc<Boxed>>>,
     seen: Mutex<Option<Arc<Seen>>>,
-}
-
-/// The scalars of each cell.
-#[derive(Debug)]
-pub(crate) struct Ranges {
-    of: ScalarField,
-    /// NaN where a value is missing.
-    cells: Vec<[f64; 2]>,
-    widest: f64,
 }
 
 /// The scalars of each cell as widgets are compared with them.
@@ -45,17 +39,8 @@ struct Boxed {
 #[derive(Debug)]
 struct Seen {
     view: View,
-    cells: Vec<Sight>,
-}
-
-/// What a camera sees of a cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Sight {
-    Seen,
-    /// Outside the frustum, or behind the eye.
-    Outside,
-    /// Of no volume.
-    Flat,
+    /// Of each cell whether it is outside the frustum, or behind the eye; empty if none is.
+    outside: Vec<bool>,
 }
 
 /// Cells that are not drawn, by the first reason that holds.
@@ -90,11 +75,10 @@ const SHARE: usize = 1 << 13;
 impl<'a> Planner<'a> {
     /// Nothing is found before a plan needs it, but for the mesh's bounds.
     pub fn new(mesh: &'a TetMesh) -> Planner<'a> {
-        let [low, high] = mesh.local_bounds();
-        let diagonal = if mesh.points().is_empty() { 0.0 } else { low.distance(high) };
         Planner {
             mesh,
-            diagonal,
+            bounds: mesh.local_bounds(),
+            flat: OnceLock::new(),
             first: Mutex::default(),
             second: Mutex::default(),
             boxes: Mutex::default(),
@@ -124,13 +108,22 @@ impl<'a> Planner<'a> {
     }
 
     pub(crate) fn measures(&self, scene: &Scene, ranges: &Ranges) -> Measures {
-        let extent = self.diagonal / scene.unit_distance;
+        let [low, high] = self.bounds;
+        let diagonal = if self.mesh.points().is_empty() { 0.0 } else { low.distance(high) };
+        let extent = diagonal / scene.unit_distance;
         let edge = extent / (self.mesh.cells().len().max(1) as f64).cbrt();
         Measures { extent, edge, widest: ranges.widest }
     }
 
     fn seen(&self, view: &View) -> Arc<Seen> {
-        known_or(&self.seen, |known| known.view == *view, || Seen::new(self.mesh, view))
+        known_or(&self.seen, |known| known.view == *view, || Seen::new(self.mesh, self.bounds, view))
+    }
+
+    fn flat(&self) -> &[u32] {
+        self.flat.get_or_init(|| {
+            let cells = self.mesh.cells().par_iter().enumerate();
+            cells.filter(|(_, cell)| is_flat(self.mesh, cell)).map(|(cell, _)| cell as u32).collect()
+        })
     }
 
     /// For each cell whether widgets may be seen there; `None` for other functions.
@@ -138,7 +131,8 @@ impl<'a> Planner<'a> {
         let (Classification::Widgets(function), Some(second)) = (&scene.classification, second) else { return None };
         let of = [first, second];
         let holds = |known: &Boxed| known.of.iter().zip(of).all(|(known, now)| Arc::ptr_eq(known, now));
-        let make = || Boxed { of: of.map(Arc::clone), boxes: CellBoxes::new(&first.cells, &second.cells) };
+        let ranges = |of: &Ranges| self.mesh.scalar_ranges(&of.of);
+        let make = || Boxed { of: of.map(Arc::clone), boxes: CellBoxes::new(&ranges(first), &ranges(second)) };
         Some(known_or(&self.boxes, holds, make).boxes.visible(function))
     }
 
@@ -152,51 +146,54 @@ impl<'a> Planner<'a> {
         faint: f64,
         kept: SkipSet,
     ) -> (Vec<u32>, Skips) {
-        let seen = self.seen(view);
+        let [drop_transparent, drop_outside] = [Skip::Transparent, Skip::Outside].map(|skip| !kept.contains(skip));
+        let (mesh, flat) = (self.mesh, self.flat());
+        let seen = drop_outside.then(|| self.seen(view));
+        let outside = seen.as_ref().map_or(&[][..], |seen| &seen.outside);
         let dark = match &scene.classification {
-            Classification::OneField(transfer) => Some([transfer.dark_intervals(0.0), transfer.dark_intervals(faint)]),
+            Classification::OneField(transfer) if colors.is_none() => {
+                Some([0.0, faint].map(|opacity| Intervals::new(transfer.dark_intervals(opacity))))
+            }
             _ => None,
         };
         let touched = self.touched(scene, first, second);
         let clear = |&v: &u32| colors.is_none_or(|colors| colors.get(v as usize).is_none_or(|color| color[3] <= 0.0));
-        let [drop_transparent, drop_outside] = [Skip::Transparent, Skip::Outside].map(|skip| !kept.contains(skip));
-        let transparent = |cell: usize| {
-            let (s, g) = (first.cells[cell], second.map_or([0.0; 2], |second| second.cells[cell]));
-            match &touched {
-                _ if s[0].is_nan() || g[0].is_nan() => !scene.no_data.is_visible(),
-                _ if colors.is_some() => self.mesh.cells()[cell].iter().all(clear),
-                Some(touched) => !touched[cell],
-                None => !scene.classification.is_visible_over(&Rectangle { s, g }),
+        let is_missing = |cell: usize| first.is_missing(cell) || second.is_some_and(|second| second.is_missing(cell));
+        let transparent = |cell: usize| match &touched {
+            _ if is_missing(cell) => !scene.no_data.is_visible(),
+            _ if colors.is_some() => mesh.cells()[cell].iter().all(clear),
+            Some(touched) => !touched[cell],
+            None => {
+                let [s, g] = [Some(first), second]
+                    .map(|ranges| ranges.map_or([0.0; 2], |ranges| mesh.scalar_range(&ranges.of, cell)));
+                !scene.classification.is_visible_over(&Rectangle { s, g })
             }
         };
-        let dark = dark.as_ref().filter(|_| colors.is_none());
+        let missing = first.has_missing || second.is_some_and(|second| second.has_missing);
         // From the weakest reason to the strongest.
         let decide = |start: usize, verdicts: &mut Verdicts| {
-            let cells = start..start + verdicts.0.len();
-            let (s, seen) = (&first.cells[cells.clone()], &seen.cells[cells.clone()]);
-            if let (Some([dark, faint]), true) = (dark, faint > 0.0) {
-                verdicts.mark_within(s, faint, Verdict::Faint);
-                verdicts.mark_within(s, dark, Verdict::Drawn);
+            if let (Some([dark, faint]), true) = (&dark, faint > 0.0) {
+                first.mark_within(mesh, faint, start, verdicts, Verdict::Faint);
+                first.mark_within(mesh, dark, start, verdicts, Verdict::Drawn);
             }
-            verdicts.mark(Verdict::Flat, |i| seen[i] == Sight::Flat);
-            if drop_outside {
-                verdicts.mark(Verdict::Outside, |i| seen[i] == Sight::Outside);
+            let end = start + verdicts.0.len();
+            let [from, to] = [start, end].map(|at| flat.partition_point(|&cell| (cell as usize) < at));
+            flat[from..to].iter().for_each(|&cell| verdicts.0[cell as usize - start] = Verdict::Flat);
+            if !outside.is_empty() {
+                let outside = &outside[start..end];
+                verdicts.mark(Verdict::Outside, |i| outside[i]);
             }
-            match dark {
+            match &dark {
                 _ if !drop_transparent => {}
-                Some([dark, _]) => verdicts.mark_within(s, dark, Verdict::Transparent),
+                Some([dark, _]) => first.mark_within(mesh, dark, start, verdicts, Verdict::Transparent),
                 None => verdicts.mark(Verdict::Transparent, |i| transparent(start + i)),
             }
             // Intervals hold no range that is not a number.
-            if !scene.no_data.is_visible() {
-                verdicts.mark(Verdict::NoData, |i| s[i][0].is_nan());
-                if let Some(second) = second {
-                    let g = &second.cells[cells];
-                    verdicts.mark(Verdict::NoData, |i| g[i][0].is_nan());
-                }
+            if missing && !scene.no_data.is_visible() {
+                verdicts.mark(Verdict::NoData, |i| is_missing(start + i));
             }
         };
-        let count = self.mesh.cells().len();
+        let count = mesh.cells().len();
         let shares: Vec<(Vec<u32>, Skips)> = (0..count.div_ceil(SHARE))
             .into_par_iter()
             .map(|share| {
@@ -221,30 +218,31 @@ fn known_or<T>(kept: &Mutex<Option<Arc<T>>>, holds: impl Fn(&T) -> bool, make: i
     known.filter(|known| holds(known)).unwrap_or_else(|| lock().insert(Arc::new(make())).clone())
 }
 
-impl Ranges {
-    fn new(mesh: &TetMesh, scalar: &ScalarField) -> Ranges {
-        let cells = mesh.scalar_ranges(scalar);
-        let widest = cells.par_iter().map(|[low, high]| high - low).reduce(|| 0.0, f64::max);
-        Ranges { of: scalar.clone(), cells, widest }
-    }
-}
+/// A corner of the mesh's box is inside the frustum for certain if it is by this share of what is added up.
+const INSIDE: f64 = 1e-9;
 
 impl Seen {
-    fn new(mesh: &TetMesh, view: &View) -> Seen {
+    fn new(mesh: &TetMesh, [low, high]: [DVec3; 2], view: &View) -> Seen {
         let offset = mesh.origin() - view.eye;
-        let eye_space: Vec<DVec3> = mesh.points().par_iter().map(|p| view.rotate(p.as_dvec3() + offset)).collect();
-        let frustum = view.frustum();
-        let sight = |cell: &[u32; 4]| {
-            let p = cell.map(|v| eye_space[v as usize]);
-            if frustum.iter().any(|&(n, c)| p.iter().all(|&q| n.dot(q) + c < 0.0)) {
-                Sight::Outside
-            } else if is_flat(mesh, cell) {
-                Sight::Flat
-            } else {
-                Sight::Seen
-            }
+        let planes = view.frustum();
+        let corner = |i: u32| DVec3::from_array([0, 1, 2].map(|axis| [low, high][(i >> axis & 1) as usize][axis]));
+        let is_inside = |p: DVec3| {
+            let (q, sum) = (view.rotate(p + offset), (p.abs() + offset.abs()).element_sum());
+            planes.iter().all(|&(n, c)| n.dot(q) + c > INSIDE * (n.abs().element_sum() * sum + c.abs()))
         };
-        Seen { view: *view, cells: mesh.cells().par_iter().map(sight).collect() }
+        // A box that is inside with all its corners has every cell inside.
+        if mesh.points().is_empty() || (0..8).all(|i| is_inside(corner(i))) {
+            return Seen { view: *view, outside: Vec::new() };
+        }
+        // The planes in the mesh's axes; and a bit for each that a point is outside of.
+        let planes = planes.map(|(n, c)| (view.right * n.x + view.down * n.y + view.forward * n.z, c));
+        let outside_of = |p: &glam::Vec3| {
+            let q = p.as_dvec3() + offset;
+            planes.iter().enumerate().fold(0, |bits, (i, &(n, c))| bits | u8::from(n.dot(q) + c < 0.0) << i)
+        };
+        let points: Vec<u8> = mesh.points().par_iter().map(outside_of).collect();
+        let outside = |cell: &[u32; 4]| cell.iter().fold(u8::MAX, |bits, &v| bits & points[v as usize]) != 0;
+        Seen { view: *view, outside: mesh.cells().par_iter().map(outside).collect() }
     }
 }
 

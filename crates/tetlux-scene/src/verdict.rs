@@ -17,8 +17,8 @@ pub(crate) enum Verdict {
 #[derive(Debug)]
 pub(crate) struct Verdicts(pub(crate) Vec<Verdict>);
 
-/// So many intervals are sooner all tried than searched.
-const FEW: usize = 12;
+/// Cells that are mostly all drawn or none.
+const RUN: usize = 64;
 
 impl Verdicts {
     /// All are drawn.
@@ -33,34 +33,24 @@ impl Verdicts {
         }
     }
 
-    /// The same for cells whose ranges lie within one of some intervals, which ascend.
-    pub(crate) fn mark_within(&mut self, ranges: &[[f64; 2]], intervals: &[[f64; 2]], verdict: Verdict) {
-        if intervals.len() <= FEW {
-            for &[from, to] in intervals {
-                for (now, &[low, high]) in self.0.iter_mut().zip(ranges) {
-                    *now = if (from <= low) & (high <= to) { verdict } else { *now };
-                }
-            }
-            return;
-        }
-        for (now, &[low, high]) in self.0.iter_mut().zip(ranges) {
-            let after = intervals.partition_point(|interval| interval[0] <= low);
-            if after > 0 && high <= intervals[after - 1][1] {
-                *now = verdict;
-            }
-        }
-    }
-
     /// The cells to draw, the first of all being `start`.
     pub(crate) fn drawn(&self, start: usize) -> Vec<u32> {
-        let count = self.count(Verdict::Drawn);
-        // One more: each is written, and then kept or not.
-        let (mut cells, mut kept) = (vec![0; count + 1], 0);
-        for (i, &verdict) in self.0.iter().enumerate() {
-            cells[kept] = (start + i) as u32;
-            kept += usize::from(verdict == Verdict::Drawn);
+        let mut cells = Vec::with_capacity(self.count(Verdict::Drawn));
+        for (index, run) in self.0.chunks(RUN).enumerate() {
+            let first = (start + index * RUN) as u32;
+            let drawn = count(run, Verdict::Drawn);
+            if drawn == run.len() {
+                cells.extend(first..first + drawn as u32);
+            } else if drawn > 0 {
+                // Each is written, and then kept or not, for want of anything to guess.
+                let (mut kept, mut count) = ([0; RUN], 0);
+                for (cell, &verdict) in (first..).zip(run) {
+                    kept[count] = cell;
+                    count += usize::from(verdict == Verdict::Drawn);
+                }
+                cells.extend_from_slice(&kept[..count]);
+            }
         }
-        cells.truncate(count);
         cells
     }
 
@@ -76,8 +66,13 @@ impl Verdicts {
     }
 
     fn count(&self, of: Verdict) -> usize {
-        self.0.iter().filter(|&&verdict| verdict == of).count()
+        self.0.chunks(RUN).map(|run| count(run, of)).sum()
     }
+}
+
+/// How many of a run are of one kind. Counted in bytes, so that many are counted at once.
+fn count(run: &[Verdict], of: Verdict) -> usize {
+    usize::from(run.iter().fold(0u8, |sum, &verdict| sum + u8::from(verdict == of)))
 }
 
 #[cfg(test)]
@@ -87,37 +82,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_are_within_few_intervals_or_many_by_the_same_rule() {
+    fn what_is_drawn_and_what_is_not_is_counted() {
         let mut random = Random::new(8);
-        let ranges: Vec<[f64; 2]> = (0..3000)
-            .map(|i| {
-                let low = random.unit();
-                let high = low + 0.05 * random.unit();
-                // Ends of intervals too, which count as within, and missing values.
-                match i % 10 {
-                    0 => [(low * 40.0).round() / 40.0; 2],
-                    1 => [f64::NAN; 2],
-                    _ => [low, high],
-                }
-            })
-            .collect();
-        for count in [0, 1, FEW, FEW + 1, 20] {
-            let intervals: Vec<[f64; 2]> = (0..count).map(|k| [k, k + 1].map(|end| end as f64 / 20.0)).collect();
-            let intervals: Vec<[f64; 2]> = intervals.into_iter().step_by(2).collect();
-            let mut verdicts = Verdicts::new(ranges.len());
-            verdicts.mark_within(&ranges, &intervals, Verdict::Faint);
-            verdicts.mark(Verdict::NoData, |i| ranges[i][0].is_nan());
-            let expected = |&[low, high]: &[f64; 2]| match () {
-                () if low.is_nan() => Verdict::NoData,
-                () if intervals.iter().any(|&[from, to]| from <= low && high <= to) => Verdict::Faint,
-                () => Verdict::Drawn,
-            };
-            assert_eq!(verdicts.0, ranges.iter().map(expected).collect::<Vec<_>>());
+        // All of a run, none of it, and some; the last run in part.
+        for share in [0.0, 0.001, 0.5, 0.999, 1.0] {
+            let of = [Verdict::Faint, Verdict::NoData, Verdict::Flat, Verdict::Outside, Verdict::Transparent];
+            let holds: Vec<bool> = (0..3010).map(|_| random.unit() < share).collect();
+            let mut verdicts = Verdicts::new(holds.len());
+            for (k, verdict) in of.into_iter().enumerate() {
+                verdicts.mark(verdict, |i| holds[i] && i % of.len() == k);
+            }
+            let expected = |i: usize| if holds[i] { of[i % of.len()] } else { Verdict::Drawn };
+            assert_eq!(verdicts.0, (0..holds.len()).map(expected).collect::<Vec<_>>());
             let (drawn, skips) = (verdicts.drawn(7), verdicts.skips());
-            assert_eq!(drawn.len() + skips.faint + skips.no_data, ranges.len());
-            assert!(drawn.iter().all(|&cell| verdicts.0[cell as usize - 7] == Verdict::Drawn));
-            assert!(drawn.windows(2).all(|pair| pair[0] < pair[1]) && skips.no_data == 300);
-            assert_eq!(skips.faint > 0, count > 0);
+            let left: Vec<u32> = (0..holds.len()).filter(|&i| !holds[i]).map(|i| i as u32 + 7).collect();
+            assert_eq!(drawn, left);
+            let counts = [skips.faint, skips.no_data, skips.flat, skips.outside, skips.transparent];
+            for (k, count) in counts.into_iter().enumerate() {
+                assert_eq!(count, (k..holds.len()).step_by(of.len()).filter(|&i| holds[i]).count());
+            }
         }
     }
 }

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use anyhow::Result;
 use glam::DQuat;
 use serde::Serialize;
+use tetlux_optics::Classification;
+use tetlux_optics::transfer::{ColorNode, OpacityNode, TransferFunction};
 use tetlux_render::{Frame, Model, Renderer, Stage, Stages};
-use tetlux_scene::{Backend, Device, Method, Plan, Scene, Work};
+use tetlux_scene::{Backend, Device, Method, Plan, Planner, Scene, Work};
 use tetlux_tables::Table;
 
 use super::Bench;
@@ -25,12 +27,16 @@ pub(crate) const TURN: f64 = 1e-3;
 /// The name of the stage that is a whole frame.
 const FRAME: &str = "frame";
 
+/// Stages that take cells or pixels, whatever the function: what was found before them is drawn.
+const DRAWING: [&str; 3] = ["set up", "bin", "draw"];
+
 /// A scene, and what is kept of it from frame to frame.
 pub(crate) struct Course<'a> {
     bench: &'a Bench<'a>,
     input: &'a Input,
     renderer: &'a Renderer,
     model: Model<'a>,
+    planner: Planner<'a>,
     /// The input's, but for what a way changes.
     pub(crate) scene: Scene,
     frames: u32,
@@ -64,7 +70,8 @@ impl<'a> Course<'a> {
 
     /// By another renderer than the bench's.
     pub(crate) fn by(input: &'a Input, bench: &'a Bench, renderer: &'a Renderer) -> Course<'a> {
-        Course { bench, input, renderer, model: Model::new(&input.mesh), scene: input.scene.clone(), frames: 0 }
+        let (model, planner) = (Model::new(&input.mesh), Planner::new(&input.mesh));
+        Course { bench, input, renderer, model, planner, scene: input.scene.clone(), frames: 0 }
     }
 
     /// How much there is to draw.
@@ -89,7 +96,7 @@ impl<'a> Course<'a> {
         self.scene.camera = self.input.scene.camera;
         let device = self.bench.calibration.device(&self.scene, &self.input.mesh, self.renderer)?;
         let mut runner = Runner { name, method, device, tables: Vec::new(), samples: Vec::new() };
-        let plan = Plan::new(&self.scene, &self.input.mesh, runner.device.as_ref())?;
+        let plan = self.planner.plan(&self.scene, runner.device.as_ref())?;
         runner.tables = tables::load_or_build(self.input, &plan, &mut Vec::new())?;
         let (frame, sample) = self.frame(&runner)?;
         let seconds = sample.first().map_or(0.0, taken);
@@ -118,16 +125,37 @@ impl<'a> Course<'a> {
 
     /// A frame of the scene as it is, and its stages: the whole, the plan, and those of the picture.
     fn frame(&self, runner: &Runner) -> Result<(Frame, Vec<Stage>)> {
-        let Course { input, renderer, model, scene, .. } = self;
+        let Course { renderer, model, planner, scene, .. } = self;
         let (mut whole, mut plans) = (Stages::default(), Stages::default());
         let frame = progress::during(runner.name, || {
             whole.run(FRAME, || -> Result<Frame> {
-                let plan = plans.run("plan", || Plan::new(scene, &input.mesh, runner.device.as_ref()))?;
+                let plan = plans.run("plan", || planner.plan(scene, runner.device.as_ref()))?;
                 Ok(renderer.render_with(scene, model, &plan, &runner.tables)?)
             })
         })?;
         let sample = [whole.into_vec(), plans.into_vec(), frame.stages.clone()].concat();
         Ok((frame, sample))
+    }
+
+    /// What a new transfer function takes of a way on a mesh that is loaded: frames of the view that was drawn last, the eye at
+    /// rest, by the scene's function and by its mirror image in turn. None where the scene has no such function.
+    pub(crate) fn new_function(&mut self, runner: &Runner, runs: usize) -> Result<Option<Cost>> {
+        let Classification::OneField(own) = &self.input.scene.classification else { return Ok(None) };
+        let functions = [mirrored(own, self.scene.scalar.range)?, own.clone()];
+        let Runner { name, method, device, tables, .. } = runner;
+        let (device, tables) = (device.clone(), tables.clone());
+        let mut retouched = Runner { name, method: *method, device, tables, samples: Vec::new() };
+        self.scene.method = *method;
+        for _ in 0..runs.max(1) {
+            for function in &functions {
+                self.scene.classification = Classification::OneField(function.clone());
+                let (_, sample) = self.frame(&retouched)?;
+                retouched.samples.push(sample);
+            }
+        }
+        // The eye moved before the first.
+        retouched.samples.remove(0);
+        Ok(Some(retouched.cost()))
     }
 
     /// Times frames of each way in turn, A B A B.
@@ -162,6 +190,14 @@ impl<'a> Course<'a> {
         };
         Ok(frames.into_iter().map(with_cost).collect())
     }
+}
+
+/// A transfer function turned round in a range.
+fn mirrored(function: &TransferFunction, [low, high]: [f64; 2]) -> Result<TransferFunction> {
+    let at = |s: f64| low + (high - s);
+    let colors = function.color_nodes().iter().rev().map(|node| ColorNode { s: at(node.s), ..*node });
+    let opacities = function.opacity_nodes().iter().rev().map(|node| OpacityNode { s: at(node.s), ..*node });
+    Ok(TransferFunction::new(colors.collect(), opacities.collect())?)
 }
 
 /// What a way costs and its first frame, or why it was not measured.
@@ -208,6 +244,12 @@ impl Cost {
         self.cpu_seconds.unwrap_or(self.wall_seconds)
     }
 
+    /// Processor seconds of what comes before the first cell is set up or the device draws.
+    pub(crate) fn before_drawing(&self) -> f64 {
+        let before = self.stages.iter().filter(|stage| !DRAWING.contains(&stage.name));
+        before.map(|stage| self.stage(stage.name)).sum()
+    }
+
     /// Processor seconds of a stage; 0 if it was not run.
     pub(crate) fn stage(&self, name: &str) -> f64 {
         let found = self.stages.iter().find(|stage| stage.name == name);
@@ -234,6 +276,21 @@ mod tests {
         assert!(names.contains(&"plan") && names.contains(&"order") && names.contains(&"draw"), "{names:?}");
         assert!(!names.contains(&FRAME));
         // The eye moves: no frame takes the last one's order for its own.
-        assert!(course.scene.camera.position.distance(input.scene.camera.position) > 0.0);
+        let camera = course.scene.camera;
+        assert!(camera.position.distance(input.scene.camera.position) > 0.0);
+        // For a new function it rests, and the function is the scene's again.
+        let (runner, ..) = course.start(cpu).unwrap();
+        let new = course.new_function(&runner, 2).unwrap().unwrap();
+        assert_eq!((new.frames, course.scene.camera), (3, input.scene.camera));
+        assert!(new.stages.iter().any(|stage| stage.name == "plan"));
+        let (Classification::OneField(own), Classification::OneField(now)) =
+            (&input.scene.classification, &course.scene.classification)
+        else {
+            panic!("the scene has a transfer function");
+        };
+        assert_eq!(own, now);
+        let mirror = mirrored(own, [-1.0, 3.0]).unwrap();
+        assert_eq!((own.opacity(0.5), own.luminance(0.5)), (mirror.opacity(1.5), mirror.luminance(1.5)));
+        assert_ne!(own.opacity(0.5), mirror.opacity(0.5));
     }
 }

@@ -22,10 +22,10 @@ const HEAD: &str = "\
 Every speed has its error beside it. `cargo xtask bench --write-docs` writes this page and its plots; with `--data FOLDER` it
 takes the NASA data sets, and with `--peer vtk` VTK's renderers of unstructured meshes draw the same scenes in the same run, a
 frame of each way in turn. Times are medians of whole frames, from planning to the picture, without reading the file and what
-is found once a mesh; the eye moves a little from frame to frame. CPU is user and system time of all threads: on a shared
-machine compare that, and ratios of one run. What takes more than a processor second is told by one frame, on a software
-adapter its first, compiling included; what takes more than 6 is not asked for more cells and pixels than those, and the page
-says so. What the plan chooses is what it chooses for `cargo xtask render`, by the same calibration of the adapter.
+is found once a mesh; the eye moves a little from frame to frame, and rests where a new transfer function is timed. CPU is
+user and system time of all threads: on a shared machine compare that, and ratios of one run. What takes more than a processor
+second is told by one frame, on a software adapter its first, compiling included; what takes more than 6 is not asked for more
+cells and pixels than those, and the page says so. What the plan chooses is what it chooses for `cargo xtask render`, by the same calibration of the adapter.
 ";
 
 const QUICK: &str = "

@@ -55,6 +55,8 @@ pub(crate) struct Race {
     pub(crate) points: usize,
     pub(crate) size: [u32; 2],
     pub(crate) entries: Vec<Entry>,
+    /// What a new transfer function takes of the default, the eye at rest.
+    pub(crate) new_function: Option<Cost>,
     /// Names, and why they did not take part.
     pub(crate) refused: Vec<[String; 2]>,
     pub(crate) peer: Option<About>,
@@ -157,6 +159,8 @@ pub(crate) fn race(bench: &Bench, input: &Input, python: Option<&str>, folder: &
             theirs.run(round)?;
         }
     }
+    let default = ours.iter().find(|ours| ours.runner.name == DEFAULT && !ours.runner.is_slow());
+    let new_function = default.map(|default| course.new_function(&default.runner, bench.runs)).transpose()?.flatten();
     let ours =
         ours.into_iter().chain(narrow).map(|Started { runner, method, backend, resources, error, peak_bytes }| Entry {
             name: runner.name.to_owned(),
@@ -181,6 +185,7 @@ pub(crate) fn race(bench: &Bench, input: &Input, python: Option<&str>, folder: &
         points: input.mesh.points().len(),
         size: input.scene.size,
         entries,
+        new_function,
         refused,
         peer,
     })

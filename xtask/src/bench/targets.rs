@@ -237,13 +237,22 @@ fn of_device(races: &[Race], hardware: bool) -> Target {
 
 fn of_transfer_function(races: &[Race]) -> Target {
     let (what, goal) = ("a new transfer function on a loaded mesh, before the first fragment", "<= 5 ms");
-    let plans = races.iter().filter_map(|race| Some((race.entry(DEFAULT)?.cost.stage("plan") * 1e3, race.cells)));
-    match plans.max_by_key(|(_, cells)| *cells) {
-        Some((took, cells)) => {
-            judged(what.into(), goal.into(), took <= 5.0, format!("{} ms CPU to classify {cells} cells", number(took)))
-        }
-        None => not_measured(what, goal, "no race"),
-    }
+    // The dearest of the largest meshes.
+    let took = |race: &Race| Some((race.cells, race.new_function.clone()?));
+    let order = |a: &(usize, Cost), b: &(usize, Cost)| {
+        a.0.cmp(&b.0).then(a.1.before_drawing().total_cmp(&b.1.before_drawing()))
+    };
+    let Some((cells, cost)) = races.iter().filter_map(took).max_by(order) else {
+        return not_measured(what, goal, "no race");
+    };
+    let took = cost.before_drawing() * 1e3;
+    let stage = |name: &str| format!("{name} {}", number(cost.stage(name) * 1e3));
+    let found = format!(
+        "{} ms CPU before the first of {cells} cells is set up, the eye at rest: {}",
+        number(took),
+        ["plan", "order", "project"].map(stage).join(", ")
+    );
+    judged(what.into(), goal.into(), took <= 5.0, found)
 }
 
 fn near(points: &[MeshPoint], cells: usize) -> Option<&MeshPoint> {
@@ -282,6 +291,7 @@ mod tests {
             stages: vec![stage("plan", 0.1), stage("draw", 0.7), stage("order", 0.2)],
         };
         assert_eq!(spent(&cost), "draw 70 %, order 20 %, plan 10 %");
+        assert!((cost.before_drawing() - 0.3).abs() < 1e-9, "all but the draw stage");
         let million = super::super::scaling::Million { cells: 3072, size: [48; 2], covered: 0.6, cost };
         let scaling = Scaling { cells: Vec::new(), pixels: Vec::new(), million };
         let all = targets(&[], &scaling, false);

@@ -12,6 +12,7 @@ use super::surfaces;
 use super::tables;
 use super::variant::{Binding, CELL_BYTES, Geometry, Variant};
 use super::{Drawn, Open};
+use crate::device_mesh::ascending;
 use crate::{Job, Resources};
 
 /// Invocations a workgroup of the compute stages, as shaders/stages have them.
@@ -111,7 +112,7 @@ impl<'a> Maker<'a> {
 
     pub(super) fn scene(&self, binding: Binding, job: &Job, resident: &Resident) -> wgpu::Buffer {
         let storage = wgpu::BufferUsages::STORAGE;
-        let kept = |part, label, contents| resident.buffer(self, job.mesh, part, label, contents);
+        let kept = |part, fill: &dyn Fn() -> wgpu::Buffer| resident.buffer(self, job.mesh, part, fill);
         match binding {
             Binding::View => self.filled("view", bytemuck::bytes_of(&job.view), wgpu::BufferUsages::UNIFORM),
             Binding::Pieces => {
@@ -121,9 +122,14 @@ impl<'a> Maker<'a> {
                 let pieces: Vec<[[f32; 4]; 3]> = pieces.iter().map(|p| [p.low, p.high, p.s]).collect();
                 self.filled("pieces", bytemuck::cast_slice(&pieces), storage)
             }
-            Binding::Points => kept(0, "points", bytemuck::cast_slice(&job.mesh.points)),
-            Binding::Cells => kept(1, "cells", bytemuck::cast_slice(&job.mesh.cells)),
-            Binding::CellScalars => kept(2, "cell scalars", bytemuck::cast_slice(&job.mesh.cell_scalars)),
+            Binding::Points => kept(0, &|| self.filled("points", bytemuck::cast_slice(&job.mesh.points), storage)),
+            Binding::Cells => kept(1, &|| {
+                let cells: Vec<[u32; 4]> = job.cells.iter().map(|&cell| ascending(cell)).collect();
+                self.filled("cells", bytemuck::cast_slice(&cells), storage)
+            }),
+            Binding::CellScalars => {
+                kept(2, &|| self.filled("cell scalars", bytemuck::cast_slice(&job.mesh.cell_scalars), storage))
+            }
             Binding::Order => self.filled("order", bytemuck::cast_slice(job.order), storage),
             Binding::Seen => self.filled("points as seen", bytemuck::cast_slice(job.seen), storage),
             Binding::EntryPieces => self.filled("pieces of cells", bytemuck::cast_slice(job.entry_pieces), storage),

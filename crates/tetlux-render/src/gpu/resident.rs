@@ -23,8 +23,7 @@ impl Resident {
         make: &Maker,
         mesh: &Arc<DeviceMesh>,
         part: usize,
-        label: &str,
-        contents: &[u8],
+        fill: &dyn Fn() -> wgpu::Buffer,
     ) -> wgpu::Buffer {
         // A panic elsewhere left nothing half done.
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -36,7 +35,7 @@ impl Resident {
             make.count(1, 0, buffer.size());
             return buffer.clone();
         }
-        let buffer = make.filled(label, contents, wgpu::BufferUsages::STORAGE);
+        let buffer = fill();
         kept.parts[part] = Some(buffer.clone());
         buffer
     }

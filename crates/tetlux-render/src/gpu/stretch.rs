@@ -5,7 +5,6 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::Job;
-use crate::device_mesh::NEGATIVE;
 
 /// Groups of more cells are composited as they come: a pixel looks at all cells of its group once for each segment.
 pub(crate) const LARGEST_GROUP: u32 = 1024;
@@ -66,8 +65,8 @@ pub(super) fn scissor(job: &Job, cells: &Range<u32>) -> [u32; 4] {
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     let eye = &job.eye;
     for &cell in &job.order[cells.start as usize..cells.end as usize] {
-        for vertex in job.mesh.cells[cell as usize] {
-            let [x, y, z, _] = job.mesh.points[(vertex & !NEGATIVE) as usize].map(f64::from);
+        for vertex in job.cells[cell as usize] {
+            let [x, y, z, _] = job.mesh.points[vertex as usize].map(f64::from);
             let at = eye.frame(DVec3::new(x, y, z)) + eye.offset;
             // A cell across the near plane may reach anywhere.
             let pixel = eye.pixel_of(at);

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use tetlux_mesh::Location;
 
 use super::record::{CHUNK, Chunk, Record, at};
-use super::set_up::{STEEPEST, SetUp, on_plane};
-use crate::device_mesh::NEGATIVE;
+use super::set_up::{STEEPEST, SetUp};
+use crate::device_mesh::{NEGATIVE, ascending};
 use crate::look::Further;
 
 /// A field in a cell, as [`Record`] has its first.
@@ -63,10 +63,11 @@ pub(crate) fn further(set_up: &SetUp, fields: &[Further], cells: &[u32], chunks:
 }
 
 fn in_cell(set_up: &SetUp, fields: &[Further], cell: u32, record: &Record, linears: &mut [Linear]) {
-    let (mesh, eye) = (set_up.mesh, set_up.eye);
-    let [a, b, c, d] = mesh.cells[cell as usize];
+    let eye = set_up.eye;
+    // In ascending order, as the cells' first fields are.
+    let [a, b, c, d] = ascending(set_up.cells[cell as usize]);
     let vertices = [a & !NEGATIVE, b, c, d].map(|v| v as usize);
-    let frame = vertices.map(|v| set_up.points[v].frame);
+    let frame = vertices.map(|v| set_up.points[v].frame());
     let depth = frame.map(|p| p.z + eye.offset.z);
     let farthest = depth[0].max(depth[1]).max(depth[2].max(depth[3])).max(eye.near);
     let scale = if eye.orthographic { eye.pixel } else { farthest * eye.pixel };
@@ -95,4 +96,9 @@ fn in_cell(set_up: &SetUp, fields: &[Further], cell: u32, record: &Record, linea
         let range = (most - f64::from(base)).max(0.0) as f32;
         *linear = Linear { at, along: along as f32, base, range };
     }
+}
+
+/// A scalar on a plane, in perspective times 1 + w: from what it is where w = 0, and `along` the rays ([`Record`]).
+fn on_plane(scalar: [f64; 3], along: f64, plane: [f32; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|i| (scalar[i] - along * f64::from(plane[i])) as f32)
 }

@@ -19,16 +19,18 @@
 //!
 //! where n, the left side on the plane, is linear in the pixel's position too.
 
+use bytemuck::{Pod, Zeroable};
+
 /// A cell ready to be drawn. Pixels are counted from the box's middle, where single precision misses by the least.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(128))]
 pub(crate) struct Record {
     /// (dw/dx, dw/dy, w at the middle) of each face's plane less those of `lean`, front faces first.
     pub(crate) planes: [[f32; 3]; 4],
-    /// How many of the planes are front faces.
-    pub(crate) fronts: u32,
     /// The plane that a thin cell seen aslant lies along; w = 0 for any other.
     pub(crate) lean: [f32; 3],
+    /// How many of the planes are front faces.
+    pub(crate) fronts: u32,
     /// w of the nearest vertex, or of the near plane; that of the farthest vertex is 0.
     pub(crate) nearest: f32,
     /// The scalar less `base`, in perspective times 1 + w, on `lean`: (d/dx, d/dy, at the middle).
@@ -51,12 +53,22 @@ pub(crate) struct Record {
     pub(crate) middle: [f32; 2],
     /// The piece of the transfer function at the lowest scalar, and the last that the range reaches into.
     pub(crate) pieces: [u32; 2],
+    unused: u32,
 }
+
+/// Numbers in a record.
+pub(crate) const FLOATS: usize = size_of::<Record>() / size_of::<f32>();
 
 const _: () = assert!(size_of::<Record>() == 128, "two cache lines");
 const _: () = assert!(tetlux_image::MAX_SIDE <= u16::MAX as u32, "pixels are counted in 16 bits");
 
 impl Record {
+    /// All of it as numbers, in the order of its members, to be stored many at a time.
+    #[inline(always)]
+    pub(crate) fn floats_mut(&mut self) -> &mut [f32; FLOATS] {
+        bytemuck::cast_mut(self)
+    }
+
     /// Depth of the nearest vertex, or of the near plane, from the mesh's origin.
     #[inline(always)]
     pub(crate) fn nearest_level(&self, orthographic: bool) -> f32 {

@@ -1,47 +1,50 @@
 //! Cells set up in double precision, as many at a time as a vector has lanes.
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, SimdNarrow, dispatch};
+mod planes;
+mod store;
+#[cfg(test)]
+mod tests;
+
+use bytemuck::{Pod, Zeroable};
+use fearless_simd::{
+    Level, Select, Simd, SimdBase, SimdCvtTruncate, SimdFloat, SimdMask, SimdNarrow, SimdWiden, dispatch,
+};
 use glam::DVec3;
 use rayon::prelude::*;
 use tetlux_mesh::{Location, ScalarField};
 use tetlux_optics::transfer_f32::{Piece, piece_at};
 
+use self::planes::{EDGE_ON, fronts_first, lean};
+use self::store::store;
 use super::bins::TILE;
-use super::record::{CHUNK, Chunk, Record};
+use super::record::{CHUNK, Chunk};
 use super::vector::{Vector, dot};
-use crate::device_mesh::{DeviceMesh, NEGATIVE, normalised};
+use crate::Job;
+use crate::device_mesh::{DeviceMesh, normalised};
 use crate::eye_space::EyeSpace;
 
-/// A vertex of the mesh as seen.
-#[derive(Clone, Copy)]
+/// A vertex of the mesh as seen: half a cache line.
+#[derive(Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C, align(32))]
 pub(crate) struct Point {
     /// Relative to the mesh's origin, in the axes of eye space.
-    pub(crate) frame: DVec3,
-    /// Pixel position; of use only in front of the near plane.
-    pixel: [f64; 2],
+    frame: [f64; 3],
     /// Normalised; 0 for cell data.
     scalar: f64,
+}
+
+impl Point {
+    pub(crate) fn frame(&self) -> DVec3 {
+        self.frame.into()
+    }
 }
 
 /// Pixels by which a cell's box is widened, for rounding.
 const MARGIN: f64 = 0.03125;
 
-/// Planes within this angle (in radians, roughly) of edge-on count as edge-on: what double precision leaves uncertain.
-const EDGE_ON: f64 = 1e-12;
-
-/// A ray in a plane that is seen edge-on is taken for one this share of the picture's larger side, and no less than
-/// this share of `NUDGE_SIDE` pixels, away: further than single precision misses the plane by. Then all faces that
-/// meet in an edge along the ray agree on which side of each it passes. No edge of a grid runs along this direction.
-const NUDGE: [f64; 2] = [5.9e-7, 3.3e-7];
-const NUDGE_SIDE: f64 = 128.0;
-
 /// A cell is thin and seen aslant if no ray is inside for more than this share of its extent in depth: from there on it
 /// matters that w is rounded.
 const THIN: f64 = 0.0625;
-
-/// A plane may be leant on if no w within the cell's box is larger than so many times its extent, nor than this: the
-/// other planes are rounded as it is.
-const LEAN: [f64; 2] = [64.0, 1e4];
 
 /// Coefficients are limited to this value: sums and products with pixel positions stay finite.
 pub(crate) const STEEPEST: f64 = 1e20;
@@ -51,282 +54,304 @@ pub(crate) fn points(mesh: &DeviceMesh, scalar: &ScalarField, eye: &EyeSpace) ->
     let point = |(i, &[x, y, z, _]): (usize, &[f32; 4])| {
         let frame = eye.frame(DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
         let scalar = if scalar.location == Location::Point { normalised(scalar, scalar.values[i]) } else { 0.0 };
-        Point { frame, pixel: eye.pixel_of(frame + eye.offset), scalar }
+        Point { frame: frame.to_array(), scalar }
     };
     mesh.points.par_iter().enumerate().map(point).collect()
 }
 
 /// What all cells of a picture have in common.
 pub(crate) struct SetUp<'a> {
-    pub(crate) mesh: &'a DeviceMesh,
+    mesh: &'a DeviceMesh,
+    /// The mesh's cells, positively oriented.
+    pub(crate) cells: &'a [[u32; 4]],
     pub(crate) points: &'a [Point],
     pub(crate) eye: &'a EyeSpace,
-    pub(crate) pieces: &'a [Piece],
-    /// Every cell is taken to meet all of them.
-    pub(crate) cut_all: bool,
-    pub(crate) size: [u32; 2],
+    pieces: &'a [Piece],
+    /// Every cell is taken to meet all pieces.
+    cut_all: bool,
+    size: [u32; 2],
+    /// No plane is edge-on of whose normal more than this points away from the eye's side, times its depth in perspective.
+    edge_on: f64,
 }
 
 /// Cells in the widest vectors.
 const WIDEST: usize = 8;
 
-/// Vertices of each face in ascending order, opposite vertices 0 to 3. In that order every other face's normal points
-/// out of a positively oriented cell.
-const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
+/// So few pieces are sooner all compared with than searched.
+const FEW: usize = 24;
 
-impl SetUp<'_> {
+/// Exchanges of two of four that sort them.
+const NETWORK: [[usize; 2]; 5] = [[0, 1], [2, 3], [0, 2], [1, 3], [1, 2]];
+
+/// Chunks that one core sets up at a time.
+const RUN: usize = 16;
+
+/// The vertices of a chunk's cells, which are in ascending order, and 1 for each cell that is positively oriented then,
+/// else -1.
+struct Corners {
+    points: [[Point; CHUNK]; 4],
+    parity: [f64; CHUNK],
+}
+
+/// A cell's box of pixels, a vector each: first and one past the last in x, the same in y, and its middle.
+struct Bounds<S: Simd> {
+    first: [S::f64s; 2],
+    end: [S::f64s; 2],
+    middle: [S::f64s; 2],
+}
+
+impl<'a> SetUp<'a> {
+    pub(crate) fn new(job: &'a Job, points: &'a [Point], cut_all: bool) -> SetUp<'a> {
+        let (mesh, eye) = (job.mesh, &job.eye);
+        let across = mesh.bounds[0].distance(mesh.bounds[1]);
+        // No normal is longer, and no coordinate larger.
+        let (normal, reach) = (across * across, eye.offset.length() + across);
+        let edge_on = EDGE_ON * 2.0 * normal * if eye.orthographic { 1.0 } else { reach };
+        SetUp { mesh, cells: job.cells, points, eye, pieces: job.pieces, cut_all, size: job.size, edge_on }
+    }
+
     /// Sets up cells, in their order, in the place of others.
     pub(crate) fn chunks(&self, level: Level, cells: &[u32], chunks: &mut [Chunk]) {
-        let pairs = cells.par_chunks(CHUNK).zip(chunks);
-        pairs.for_each(|(cells, chunk)| dispatch!(level, simd => self.chunk(simd, cells, chunk)));
+        let runs = cells.par_chunks(RUN * CHUNK).zip(chunks.par_chunks_mut(RUN));
+        runs.for_each(|(cells, chunks)| dispatch!(level, simd => self.run(simd, cells, chunks)));
     }
 
     #[inline(always)]
-    fn chunk<S: Simd>(&self, simd: S, cells: &[u32], chunk: &mut Chunk) {
-        // All that is needed is loaded first, the misses at once.
+    fn run<S: Simd>(&self, simd: S, cells: &[u32], chunks: &mut [Chunk]) {
+        let mut rest = cells.chunks(CHUNK);
+        let mut cells = rest.next().unwrap_or_default();
+        let mut names = self.names(cells);
+        for chunk in chunks {
+            // Those of the next are on their way while these are set up.
+            let next = rest.next().unwrap_or_default();
+            let next_names = self.names(next);
+            self.chunk(simd, cells, &names, chunk);
+            (cells, names) = (next, next_names);
+        }
+    }
+
+    /// The vertices of a chunk's cells.
+    #[inline(always)]
+    fn names(&self, cells: &[u32]) -> [[u32; 4]; CHUNK] {
         let mut names = [[0; 4]; CHUNK];
         for (names, &cell) in names.iter_mut().zip(cells) {
-            *names = self.mesh.cells[cell as usize];
+            *names = self.cells[cell as usize];
         }
-        let mut touched = 0;
-        for &[a, b, c, d] in &names[..cells.len()] {
-            for v in [a & !NEGATIVE, b, c, d] {
-                touched ^= self.points[v as usize].scalar.to_bits();
-            }
+        names
+    }
+
+    #[inline(always)]
+    fn chunk<S: Simd>(&self, simd: S, cells: &[u32], names: &[[u32; 4]; CHUNK], chunk: &mut Chunk) {
+        let (names, parity) = ascending(names);
+        let mut corners = Corners { points: [[Point::default(); CHUNK]; 4], parity };
+        let Corners { points: [a, b, c, d], .. } = &mut corners;
+        // All that is needed is loaded first, the misses at once.
+        for lane in 0..cells.len().min(CHUNK) {
+            a[lane] = self.points[names[0][lane] as usize];
+            b[lane] = self.points[names[1][lane] as usize];
+            c[lane] = self.points[names[2][lane] as usize];
+            d[lane] = self.points[names[3][lane] as usize];
         }
-        std::hint::black_box(touched);
+        // Whole vectors: behind the last cell they hold what nothing looks at.
+        for start in (0..cells.len()).step_by(S::f64s::LEN) {
+            self.vector(simd, &cells[start..], &corners, start, chunk);
+        }
+        // Nothing is seen of what is behind the last cell.
+        chunk.tiles[cells.len()..].fill([0; 4]);
+    }
+
+    /// Sets up as many cells as there are lanes, the first of them at `start`.
+    #[inline(always)]
+    fn vector<S: Simd>(&self, simd: S, cells: &[u32], corners: &Corners, start: usize, chunk: &mut Chunk) {
         let lanes = S::f64s::LEN;
-        for start in (0..cells.len()).step_by(lanes) {
-            let end = (start + lanes).min(cells.len());
-            self.vector(simd, &cells[start..end], &names[start..end], &mut chunk.records[start..end]);
-        }
-        chunk.tiles = [[0; 4]; CHUNK];
-        for (tiles, record) in chunk.tiles.iter_mut().zip(&chunk.records[..cells.len()]) {
-            let ([x, y], [right, bottom]) = (record.first, record.end);
+        let splat = |x: f64| S::f64s::splat(simd, x);
+        let Corners { points: [a, b, c, d], parity } = corners;
+        let (a, s0) = load(simd, &a[start..start + lanes]);
+        let (b, s1) = load(simd, &b[start..start + lanes]);
+        let (c, s2) = load(simd, &c[start..start + lanes]);
+        let (d, s3) = load(simd, &d[start..start + lanes]);
+        let scalars = [s0, s1, s2, s3];
+        let parity = S::f64s::from_slice(simd, &parity[start..start + lanes]);
+        let offset = Vector { x: splat(self.eye.offset.x), y: splat(self.eye.offset.y), z: splat(self.eye.offset.z) };
+        let eye = [a + offset, b + offset, c + offset, d + offset];
+        let farthest = eye[0].z.max(eye[1].z).max(eye[2].z.max(eye[3].z));
+        let nearest = eye[0].z.min(eye[1].z).min(eye[2].z.min(eye[3].z));
+        let bounds = self.bound(simd, &eye, nearest);
+        let is_seen = bounds.first[0].simd_lt(bounds.end[0]) & bounds.first[1].simd_lt(bounds.end[1]);
+        let boxes = packed(simd, &bounds, is_seen);
+        let tiles = &mut chunk.tiles[start..start + lanes];
+        for (lane, tiles) in tiles.iter_mut().enumerate() {
+            let ([x, y], [right, bottom]) = (boxes[lane], boxes[lanes + lane]);
             const SIDE: u16 = TILE as u16;
             *tiles = [x / SIDE, y / SIDE, right.div_ceil(SIDE), bottom.div_ceil(SIDE)];
         }
-    }
-
-    /// Sets up as many cells as there are lanes, or fewer.
-    #[inline(always)]
-    fn vector<S: Simd>(&self, simd: S, cells: &[u32], names: &[[u32; 4]], records: &mut [Record]) {
-        let mut frame = [[[0.0; WIDEST]; 3]; 4];
-        let mut pixels = [[[0.0; WIDEST]; 2]; 4];
-        let mut scalars = [[0.0; WIDEST]; 4];
-        for (lane, names) in names.iter().enumerate() {
-            for i in 0..4 {
-                let point = &self.points[(names[i] & !NEGATIVE) as usize];
-                frame[i][0][lane] = point.frame.x;
-                frame[i][1][lane] = point.frame.y;
-                frame[i][2][lane] = point.frame.z;
-                pixels[i][0][lane] = point.pixel[0];
-                pixels[i][1][lane] = point.pixel[1];
-                scalars[i][lane] = point.scalar;
-            }
-        }
-        let middle = self.bound(simd, &frame, &pixels, records);
-        if !records.iter().any(Record::is_seen) {
+        let records = &mut chunk.records[start..start + lanes];
+        if !is_seen.any_true() {
+            records.iter_mut().for_each(|record| (record.first, record.end) = ([0; 2], [0; 2]));
             return;
         }
-        let base = self.classify(simd, cells, &scalars, records);
+        let (base, range, pieces) = self.classify(simd, cells, scalars);
 
-        let splat = |x: f64| S::f64s::splat(simd, x);
-        let load = |values: &[f64; WIDEST]| S::f64s::from_slice(simd, &values[..S::f64s::LEN]);
-        let frame: [Vector<S>; 4] = [
-            Vector { x: load(&frame[0][0]), y: load(&frame[0][1]), z: load(&frame[0][2]) },
-            Vector { x: load(&frame[1][0]), y: load(&frame[1][1]), z: load(&frame[1][2]) },
-            Vector { x: load(&frame[2][0]), y: load(&frame[2][1]), z: load(&frame[2][2]) },
-            Vector { x: load(&frame[3][0]), y: load(&frame[3][1]), z: load(&frame[3][2]) },
-        ];
-        let offset = Vector { x: splat(self.eye.offset.x), y: splat(self.eye.offset.y), z: splat(self.eye.offset.z) };
-        let eye = [frame[0] + offset, frame[1] + offset, frame[2] + offset, frame[3] + offset];
-        let farthest = eye[0].z.max(eye[1].z).max(eye[2].z.max(eye[3].z)).max(self.eye.near);
-        let nearest = eye[0].z.min(eye[1].z).min(eye[2].z.min(eye[3].z)).max(self.eye.near).min(farthest);
+        let farthest = farthest.max(self.eye.near);
+        let nearest = nearest.max(self.eye.near).min(farthest);
         // The ray through the middle pixel: in perspective where it is at depth z_ref.
         let scale = if self.eye.orthographic { splat(self.eye.pixel) } else { farthest * self.eye.pixel };
-        let [across, down] = [0, 1].map(|axis| load(&middle[axis]) + (0.5 - self.eye.middle[axis]));
-        let origin = Vector { x: across * scale, y: down * scale, z: farthest };
+        let across = (bounds.middle[0] + (0.5 - self.eye.middle[0])) * scale;
+        let down = (bounds.middle[1] + (0.5 - self.eye.middle[1])) * scale;
+        let origin = Vector { x: across, y: down, z: farthest };
 
         // (b-a) x (c-a) of each face: both cells at a face find the same bits.
-        let (e1, e2, e3) = (frame[1] - frame[0], frame[2] - frame[0], frame[3] - frame[0]);
-        let normals = [(frame[2] - frame[1]).cross(frame[3] - frame[1]), e2.cross(e3), e1.cross(e3), e1.cross(e2)];
-        let (mut planes, mut seen) = ([[splat(0.0); 4]; 4], splat(0.0));
-        for (face, [a, b, c]) in FACES.into_iter().enumerate() {
-            let side;
-            (planes[face], side) = self.plane(simd, normals[face], [eye[a], eye[b], eye[c]], origin, scale);
-            seen += side.max(-side);
-        }
+        let (e1, e2, e3) = (b - a, c - a, d - a);
+        let normals = [(c - b).cross(d - b), e2.cross(e3), e1.cross(e3), e1.cross(e2)];
+        let (mut planes, sides) = self.planes(simd, &normals, &eye, origin, scale);
+        let [p, q, r, s] = sides;
+        let seen = p.abs() + q.abs() + r.abs() + s.abs();
         let span = farthest - nearest;
-        let nearest = if self.eye.orthographic { span } else { span / nearest }.min(STEEPEST);
+        let near = if self.eye.orthographic { span } else { span / nearest }.min(STEEPEST);
 
-        let base = load(&base);
-        let [a, b, c, d] = &scalars;
-        let s = [load(a) - base, load(b) - base, load(c) - base, load(d) - base];
         let volume = dot(e1, normals[1]);
-        let size = volume.max(-volume);
+        let size = volume.abs();
         let tiny = size.simd_le(f64::MIN_POSITIVE);
         // Six volumes over twice the area that is seen is the longest ray; that area is half of all faces'.
         let longest = size * if self.eye.orthographic { splat(2.0) } else { farthest * 2.0 };
-        let thin = longest.simd_lt(span * seen * THIN).to_bitmask();
+        let thin = longest.simd_lt(span * seen * THIN) & is_seen;
         let inverse = splat(1.0) / tiny.select(splat(1.0), volume);
-        let [s1, s2, s3] = [(s[1] - s[0]) * inverse, (s[2] - s[0]) * inverse, (s[3] - s[0]) * inverse];
-        let sum = normals[1] * s1 - normals[2] * s2 + normals[3] * s3;
+        let [s0, s1, s2, s3] = scalars;
+        let [r1, r2, r3] = [(s1 - s0) * inverse, (s2 - s0) * inverse, (s3 - s0) * inverse];
+        let sum = normals[1] * r1 - normals[2] * r2 + normals[3] * r3;
         let zero = splat(0.0);
         let gradient = Vector { x: tiny.select(zero, sum.x), y: tiny.select(zero, sum.y), z: tiny.select(zero, sum.z) };
-        let at = s[0] + dot(gradient, origin - eye[0]);
+        let at = s0 - base + dot(gradient, origin - eye[0]);
         let along = if self.eye.orthographic { gradient.z } else { dot(gradient, origin) - at };
-        let (x, y, at, along) = (limited(gradient.x * scale), limited(gradient.y * scale), limited(at), limited(along));
+        let mut scalar = [limited(gradient.x * scale), limited(gradient.y * scale), limited(at)];
+        let along = limited(along);
 
-        // Two values of each lane, the first of all lanes before the second.
-        let pair = |a: S::f64s, b: S::f64s| -> [f32; 2 * WIDEST] {
-            let mut pair = [0.0; 2 * WIDEST];
-            a.narrow(b).store_slice(&mut pair[..2 * S::f64s::LEN]);
-            pair
-        };
-        let [[px, py, pw, pt], [qx, qy, qw, qt], [rx, ry, rw, rt], [sx, sy, sw, st]] = planes;
-        let slopes = [pair(px, py), pair(qx, qy), pair(rx, ry), pair(sx, sy)];
-        let (heights, toward) = ([pair(pw, qw), pair(rw, sw)], [pair(pt, qt), pair(rt, st)]);
-        let depths = [pair(nearest, farthest), pair(farthest - self.eye.offset.z, along)];
-        let scalars = [pair(x, y), pair(at, at)];
-        let second = S::f64s::LEN;
-        for (lane, (names, record)) in names.iter().zip(records).enumerate() {
-            let other = lane + second;
-            let parity = if names[0] & NEGATIVE == 0 { 1.0 } else { -1.0 };
-            let (mut fronts, mut backs, mut faces) = (0, 4, [0; 4]);
-            for face in 0..4 {
-                let here = if face % 2 == 0 { lane } else { other };
-                let inward = if face % 2 == 0 { -parity } else { parity };
-                let is_front = toward[face / 2][here] * inward > 0.0;
-                backs -= usize::from(!is_front);
-                let place = if is_front { fronts } else { backs };
-                record.planes[place] = [slopes[face][lane], slopes[face][other], heights[face / 2][here]];
-                faces[place] = face;
-                fronts += usize::from(is_front);
+        let (fronts, back) = fronts_first(simd, &mut planes, sides, parity);
+        let mut flatter = [zero; 3];
+        if thin.any_true() {
+            let half = [(bounds.end[0] - bounds.first[0]) * 0.5, (bounds.end[1] - bounds.first[1]) * 0.5];
+            flatter = lean(simd, &planes, back, half, thin, near);
+            for i in 0..3 {
+                for plane in &mut planes {
+                    plane[i] -= flatter[i];
+                }
+                scalar[i] -= along * flatter[i];
             }
-            record.fronts = fronts as u32;
-            record.lean = [0.0; 3];
-            record.nearest = depths[0][lane];
-            record.depth = depths[0][other];
-            record.level = depths[1][lane];
-            record.along = depths[1][other];
-            record.scalar = [scalars[0][lane], scalars[0][other], scalars[1][lane]];
-            if thin >> lane & 1 != 0 {
-                let planes = faces.map(|face| [0, 1, 2].map(|i| planes[face][i][lane]));
-                lean(record, planes, [x[lane], y[lane], at[lane]], along[lane]);
-            }
+        }
+        let ([x, y, at], [lean_x, lean_y, lean_at]) = (scalar, flatter);
+        let [[px, py, pw], [qx, qy, qw], [rx, ry, rw], [sx, sy, sw]] = planes;
+        let fields = [
+            [px, near],
+            [py, x],
+            [pw, y],
+            [qx, at],
+            [qy, along],
+            [qw, base],
+            [rx, range],
+            [ry, farthest],
+            [rw, farthest - self.eye.offset.z],
+            [sx, zero],
+            [sy, zero],
+            [sw, bounds.middle[0]],
+            [lean_x, bounds.middle[1]],
+            [lean_y, zero],
+            [lean_at, zero],
+        ];
+        store(simd, fields, records);
+        let counts = integers::<S>(fronts.narrow(zero));
+        for (lane, record) in records.iter_mut().enumerate() {
+            record.fronts = counts[lane] as u32;
+            (record.first, record.end) = (boxes[lane], boxes[lanes + lane]);
+            record.pieces = [pieces[lane], pieces[lanes + lane]];
         }
     }
 
-    /// (dw/dx, dw/dy, w at the middle) of the plane through a, b, c with normal n, and +1 if n points away from
-    /// the eye's side, else -1; and how much of n points away, times the plane's depth in perspective. `origin` is the
-    /// point at depth `z_ref` on the middle's ray, `scale` the side of a pixel there.
+    /// The boxes of pixels in which cells may be seen: empty if they hold no pixel's centre.
     #[inline(always)]
-    fn plane<S: Simd>(
-        &self,
-        simd: S,
-        n: Vector<S>,
-        [a, b, c]: [Vector<S>; 3],
-        origin: Vector<S>,
-        scale: S::f64s,
-    ) -> ([S::f64s; 4], S::f64s) {
-        let splat = |x: f64| S::f64s::splat(simd, x);
-        let (side, size, across) = if self.eye.orthographic {
-            (n.z, n.x.max(-n.x) + n.y.max(-n.y), n.x * (origin.x - a.x) + n.y * (origin.y - a.y))
-        } else {
-            let (side, reach) = (dot(n, a), a.reach().max(b.reach()).max(c.reach()));
-            let in_front = a.z.simd_gt(self.eye.near);
-            let at_a = in_front.select(side, splat(0.0)) * origin.z / in_front.select(a.z, splat(1.0));
-            (side, (n.x.max(-n.x) + n.y.max(-n.y) + n.z.max(-n.z)) * reach, dot(n, origin) - at_a)
-        };
-        let toward = side.simd_ge(0.0).select(splat(1.0), splat(-1.0));
-        // Seen edge-on the plane bounds nothing but the silhouette: any large slope of the right sign does, through
-        // the pixel of `a` if that is in front of the eye, and both cells at the face choose the same.
-        let edge_on = side.max(-side).simd_le(size * EDGE_ON);
-        let inverse = splat(1.0) / edge_on.select((size * 1e-12).max(1e-200) * toward, side);
-        let (x, y) = (n.x * scale * inverse, n.y * scale * inverse);
-        let larger = f64::from(self.size[0].max(self.size[1])).max(NUDGE_SIDE);
-        let nudge = x * (NUDGE[0] * larger) + y * (NUDGE[1] * larger);
-        let at = edge_on.select(across * inverse + nudge, dot(n, origin - a) * inverse);
-        ([limited(x), limited(y), limited(at), toward], side)
-    }
-
-    /// Sets the boxes of pixels in which cells may be seen: empty if they hold no pixel's centre. Their middles.
-    #[inline(always)]
-    fn bound<S: Simd>(
-        &self,
-        simd: S,
-        frame: &[[[f64; WIDEST]; 3]; 4],
-        pixels: &[[[f64; WIDEST]; 2]; 4],
-        records: &mut [Record],
-    ) -> [[f64; WIDEST]; 2] {
-        let lanes = S::f64s::LEN;
-        let load = |values: &[f64; WIDEST]| S::f64s::from_slice(simd, &values[..lanes]);
-        let [mut low, mut high] = [[[0.0; WIDEST]; 2]; 2];
-        for axis in 0..2 {
-            let [a, b] = [load(&pixels[0][axis]), load(&pixels[1][axis])];
-            let [c, d] = [load(&pixels[2][axis]), load(&pixels[3][axis])];
-            a.min(b).min(c.min(d)).store_slice(&mut low[axis][..lanes]);
-            a.max(b).max(c.max(d)).store_slice(&mut high[axis][..lanes]);
-        }
-        let near = self.eye.near - self.eye.offset.z;
-        let nearest = load(&frame[0][2]).min(load(&frame[1][2])).min(load(&frame[2][2]).min(load(&frame[3][2])));
-        if nearest.simd_lt(near).any_true() {
-            for lane in (0..records.len()).filter(|&lane| nearest[lane] < near) {
-                let point = |i: usize| DVec3::new(frame[i][0][lane], frame[i][1][lane], frame[i][2][lane]);
-                let bounds = self.eye.seen_bounds([0, 1, 2, 3].map(|i| point(i) + self.eye.offset));
+    fn bound<S: Simd>(&self, simd: S, eye: &[Vector<S>; 4], nearest: S::f64s) -> Bounds<S> {
+        let [ax, ay] = self.pixel(simd, eye[0]);
+        let [bx, by] = self.pixel(simd, eye[1]);
+        let [cx, cy] = self.pixel(simd, eye[2]);
+        let [dx, dy] = self.pixel(simd, eye[3]);
+        let mut low = [ax.min(bx).min(cx.min(dx)), ay.min(by).min(cy.min(dy))];
+        let mut high = [ax.max(bx).max(cx.max(dx)), ay.max(by).max(cy.max(dy))];
+        let before = nearest.simd_lt(self.eye.near);
+        if before.any_true() {
+            let (before, mut bounds) = (before.to_bitmask(), [low, high]);
+            for lane in (0..S::f64s::LEN).filter(|lane| before >> lane & 1 != 0) {
+                let point = |i: usize| DVec3::new(eye[i].x[lane], eye[i].y[lane], eye[i].z[lane]);
+                let found = self.eye.seen_bounds([point(0), point(1), point(2), point(3)]);
                 for axis in 0..2 {
-                    (low[axis][lane], high[axis][lane]) = (bounds[0][axis], bounds[1][axis]);
+                    (bounds[0][axis][lane], bounds[1][axis][lane]) = (found[0][axis], found[1][axis]);
                 }
             }
+            [low, high] = bounds;
         }
         // The pixels whose centres, at i + 1/2, lie between the bounds.
-        let [mut first, mut end, mut middle] = [[[0.0; WIDEST]; 2]; 3];
-        for axis in 0..2 {
-            let side = f64::from(self.size[axis]);
-            let from = (load(&low[axis]) + (0.5 - MARGIN)).max(0.0).min(side).floor();
-            let to = (load(&high[axis]) + (0.5 + MARGIN)).max(0.0).min(side).floor();
-            from.store_slice(&mut first[axis][..lanes]);
-            to.store_slice(&mut end[axis][..lanes]);
-            ((from + to) * 0.5).floor().store_slice(&mut middle[axis][..lanes]);
-        }
-        for (lane, record) in records.iter_mut().enumerate() {
-            record.first = [first[0][lane] as u16, first[1][lane] as u16];
-            record.end = [end[0][lane] as u16, end[1][lane] as u16];
-            let seen = record.first[0] < record.end[0] && record.first[1] < record.end[1];
-            if !seen {
-                (record.first, record.end) = ([0; 2], [0; 2]);
-            }
-            record.middle = [middle[0][lane] as f32, middle[1][lane] as f32];
-        }
-        middle
+        let [width, height] = self.size.map(f64::from);
+        let inside = |x: S::f64s, side: f64| x.max(0.0).min(side).floor();
+        let first = [inside(low[0] + (0.5 - MARGIN), width), inside(low[1] + (0.5 - MARGIN), height)];
+        let end = [inside(high[0] + (0.5 + MARGIN), width), inside(high[1] + (0.5 + MARGIN), height)];
+        let middle = [((first[0] + end[0]) * 0.5).floor(), ((first[1] + end[1]) * 0.5).floor()];
+        Bounds { first, end, middle }
     }
 
-    /// Sets the ranges of cells' scalars and the pieces of the transfer function that they meet. The lowest scalars.
+    /// The pixel positions of points; of use only in front of the near plane.
+    #[inline(always)]
+    fn pixel<S: Simd>(&self, simd: S, p: Vector<S>) -> [S::f64s; 2] {
+        let scale = if self.eye.orthographic {
+            S::f64s::splat(simd, 1.0 / self.eye.pixel)
+        } else {
+            S::f64s::splat(simd, 1.0) / (p.z.max(self.eye.near) * self.eye.pixel)
+        };
+        [p.x * scale + self.eye.middle[0], p.y * scale + self.eye.middle[1]]
+    }
+
+    /// The lowest scalars of cells, how much higher the highest are, both in single precision, and the first and the last
+    /// pieces of the transfer function that they meet: the first of all lanes before the last.
     #[inline(always)]
     fn classify<S: Simd>(
         &self,
         simd: S,
         cells: &[u32],
-        scalars: &[[f64; WIDEST]; 4],
-        records: &mut [Record],
-    ) -> [f64; WIDEST] {
+        [a, b, c, d]: [S::f64s; 4],
+    ) -> (S::f64s, S::f64s, [u32; 2 * WIDEST]) {
         let lanes = S::f64s::LEN;
-        let load = |values: &[f64; WIDEST]| S::f64s::from_slice(simd, &values[..lanes]);
-        let [a, b, c, d] = [load(&scalars[0]), load(&scalars[1]), load(&scalars[2]), load(&scalars[3])];
-        let mut ends = [0.0; 2 * WIDEST];
-        a.min(b).min(c.min(d)).narrow(a.max(b).max(c.max(d))).store_slice(&mut ends[..2 * lanes]);
-        let mut base = [0.0; WIDEST];
-        for (lane, record) in records.iter_mut().enumerate() {
-            let (least, most) = match self.mesh.own_scalar(cells[lane]) {
-                Some(s) => (s, s),
-                None => (ends[lane], ends[lanes + lane]),
-            };
-            (record.base, record.range) = (least, most - least);
-            base[lane] = f64::from(least);
-            record.pieces = if self.cut_all { [0, self.pieces.len() as u32 - 1] } else { self.pieces_of(least, most) };
+        let mut ends = a.min(b).min(c.min(d)).narrow(a.max(b).max(c.max(d)));
+        if !self.mesh.cell_scalars.is_empty() {
+            let mut own = ends;
+            for (lane, &cell) in cells.iter().enumerate().take(lanes) {
+                if let Some(s) = self.mesh.own_scalar(cell) {
+                    (own[lane], own[lanes + lane]) = (s, s);
+                }
+            }
+            ends = own;
         }
-        base
+        let mut pieces = [0; 2 * WIDEST];
+        if self.cut_all {
+            pieces[lanes..].fill(self.pieces.len() as u32 - 1);
+        } else if self.pieces.len() <= FEW {
+            // Pieces begin where others end: as many as begin at or below the lowest, and below the highest, but one.
+            let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
+            let (mut first, mut last) = (zero, zero);
+            for piece in self.pieces.iter().skip(1) {
+                let begin = S::f32s::splat(simd, piece.s[0]);
+                first += begin.simd_le(ends).select(one, zero);
+                last += begin.simd_lt(ends).select(one, zero);
+            }
+            let (firsts, lasts) = (integers::<S>(first), integers::<S>(last));
+            for lane in 0..lanes {
+                let (first, last) = (firsts[lane] as u32, lasts[lanes + lane] as u32);
+                // A piece that is only touched at its beginning is not entered.
+                (pieces[lane], pieces[lanes + lane]) = (first, last.max(first));
+            }
+        } else {
+            for lane in 0..lanes {
+                [pieces[lane], pieces[lanes + lane]] = self.pieces_of(ends[lane], ends[lanes + lane]);
+            }
+        }
+        let (base, most) = ends.widen();
+        (base, most - base, pieces)
     }
 
     /// The first and the last piece of the transfer function that a range meets.
@@ -342,32 +367,63 @@ impl SetUp<'_> {
     }
 }
 
-/// Has the planes and the scalar of a thin cell counted from the front face or the back face that are the least apart.
-#[cold]
-fn lean(record: &mut Record, planes: [[f64; 3]; 4], scalar: [f64; 3], along: f64) {
-    let half = [0, 1].map(|axis| 0.5 * f64::from(record.end[axis] - record.first[axis]));
-    // The largest value in the box.
-    let reach = |[x, y, at]: [f64; 3]| x.abs() * half[0] + y.abs() * half[1] + at.abs();
-    let less = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    let (fronts, backs) = planes.split_at(record.fronts as usize);
-    let pairs = fronts.iter().flat_map(|&front| backs.iter().map(move |&back| [front, back]));
-    let apart = |[front, back]: &[[f64; 3]; 2]| reach(less(*front, *back));
-    let Some([front, back]) = pairs.min_by(|a, b| apart(a).total_cmp(&apart(b))) else { return };
-    let flatter = if reach(front) <= reach(back) { front } else { back };
-    if reach(flatter) <= LEAN[1].min(LEAN[0] * f64::from(record.nearest)) {
-        record.lean = flatter.map(|x| x as f32);
-        record.planes = planes.map(|plane| less(plane, record.lean.map(f64::from)).map(|x| x as f32));
-        record.scalar = on_plane(scalar, along, record.lean);
-    }
-}
-
-/// A scalar on a plane, in perspective times 1 + w: from what it is where w = 0, and `along` the rays ([`Record`]).
-#[inline(always)]
-pub(crate) fn on_plane(scalar: [f64; 3], along: f64, plane: [f32; 3]) -> [f32; 3] {
-    [0, 1, 2].map(|i| (scalar[i] - along * f64::from(plane[i])) as f32)
-}
-
 #[inline(always)]
 fn limited<V: fearless_simd::SimdFloat<S, Element = f64>, S: Simd>(x: V) -> V {
     x.max(-STEEPEST).min(STEEPEST)
+}
+
+/// The vertices of each cell in ascending order, the first of all cells before the second, and 1 for each cell that takes
+/// an even permutation, else -1.
+#[inline(always)]
+fn ascending(cells: &[[u32; 4]; CHUNK]) -> ([[u32; CHUNK]; 4], [f64; CHUNK]) {
+    let (mut names, mut odd, mut parity) = ([[0; CHUNK]; 4], [0; CHUNK], [1.0; CHUNK]);
+    for (lane, cell) in cells.iter().enumerate() {
+        [names[0][lane], names[1][lane], names[2][lane], names[3][lane]] = *cell;
+    }
+    for [i, j] in NETWORK {
+        for lane in 0..CHUNK {
+            let (a, b) = (names[i][lane], names[j][lane]);
+            odd[lane] ^= u32::from(a > b);
+            (names[i][lane], names[j][lane]) = (a.min(b), a.max(b));
+        }
+    }
+    for (parity, odd) in parity.iter_mut().zip(odd) {
+        *parity = if odd == 0 { 1.0 } else { -1.0 };
+    }
+    (names, parity)
+}
+
+/// The coordinates and the scalars of as many points as there are lanes.
+#[inline(always)]
+fn load<S: Simd>(simd: S, points: &[Point]) -> (Vector<S>, S::f64s) {
+    let (values, lanes) = (bytemuck::cast_slice(points), S::f64s::LEN);
+    let row = |i: usize| S::f64s::from_slice(simd, &values[i * lanes..][..lanes]);
+    // Every other number, twice: x and z, y and s; then each alone.
+    let (xz, ys) = row(0).deinterleave(row(1));
+    let (more_xz, more_ys) = row(2).deinterleave(row(3));
+    let ((x, z), (y, s)) = (xz.deinterleave(more_xz), ys.deinterleave(more_ys));
+    (Vector { x, y, z }, s)
+}
+
+/// The corners of boxes: the first pixels of all lanes before those behind the last; all 0 where nothing is seen.
+#[inline(always)]
+fn packed<S: Simd>(simd: S, bounds: &Bounds<S>, is_seen: S::mask64s) -> [[u16; 2]; 2 * WIDEST] {
+    let zero = S::f64s::splat(simd, 0.0);
+    let along = |axis: usize| {
+        integers::<S>(is_seen.select(bounds.first[axis], zero).narrow(is_seen.select(bounds.end[axis], zero)))
+    };
+    let (x, y) = (along(0), along(1));
+    let mut corners = [[0; 2]; 2 * WIDEST];
+    for (i, corner) in corners.iter_mut().enumerate() {
+        *corner = [x[i] as u16, y[i] as u16];
+    }
+    corners
+}
+
+/// Small whole numbers as such.
+#[inline(always)]
+fn integers<S: Simd>(numbers: S::f32s) -> [i32; 2 * WIDEST] {
+    let mut integers = [0; 2 * WIDEST];
+    S::i32s::truncate_from(numbers).store_slice(&mut integers[..S::f32s::LEN]);
+    integers
 }

@@ -13,7 +13,7 @@ use tetlux_scene::{Camera, Method, Projection, Scene, SkipSet, TablePrecision, V
 
 use super::*;
 use crate::cell::Kind;
-use crate::device_mesh::{DeviceMesh, NEGATIVE};
+use crate::device_mesh::{DeviceMesh, NEGATIVE, ascending};
 use crate::device_view::DeviceView;
 use crate::eye_space::EyeSpace;
 use crate::instructions::Instructions;
@@ -67,6 +67,7 @@ impl Drawing {
     fn draw(&self, level: Level, order: &[u32], groups: &[Range<u32>], max_error: f64) -> Vec<[f32; 4]> {
         let job = Job {
             mesh: &self.device,
+            cells: self.mesh.cells(),
             scalar: &self.scene.scalar,
             view: self.lens().view,
             eye: EyeSpace::new(&self.view, &self.mesh, &self.device),
@@ -138,7 +139,7 @@ impl Drawing {
             let [x, y] =
                 [(index % width, width), (index / width, height)].map(|(i, n)| i as f32 + 0.5 - n as f32 * 0.5);
             let mut fragments: Vec<(f32, [f32; 4])> = Vec::new();
-            for names in &self.device.cells {
+            for names in self.mesh.cells().iter().map(|&cell| ascending(cell)) {
                 let points = names.map(|v| self.device.points[(v & !NEGATIVE) as usize]);
                 let vertices = names.map(|v| {
                     let v = (v & !NEGATIVE) as usize;
