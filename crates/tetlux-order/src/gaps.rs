@@ -115,22 +115,22 @@ impl Gaps {
         let view = View { rays, inside, tolerance: tolerance(facts, rays) };
 
         let boundary = (facts.interior..facts.owners.len()).into_par_iter().with_min_len(256);
+        let surface = facts.surface(mesh);
         faces.clear();
         if !inside && outline.find(mesh, facts, codes, rays) {
             lists.fill(count, outline.lines.iter().map(|line| line.rows(rays)));
             bands.par_iter_mut().enumerate().for_each(|(band, memory)| {
                 memory.wind(rays, lists.of(band).map(|line| &outline.lines[line]), &area(band));
             });
-            let corners = &facts.surface(mesh).corners;
             faces.par_extend(boundary.filter_map(|face| {
-                let pixels = outline.pixels(rays, corners[face - facts.interior]);
+                let pixels = outline.pixels(rays, surface.corners[face - facts.interior]);
                 let looked_at = bands[bands_of(&pixels.rows)].iter().any(|band| band.looks_at(&pixels));
                 if looked_at { Face::new(mesh, facts, face, codes[face], pixels) } else { None }
             }));
             lists.fill(count, faces.iter().map(|face| face.pixels.rows.clone()));
         } else {
             faces.par_extend(boundary.filter_map(|face| {
-                let pixels = rays.bounds(facts.vertices(mesh, face).1.map(|v| mesh.points()[v as usize]));
+                let pixels = rays.bounds(surface.corners(face - facts.interior));
                 Face::new(mesh, facts, face, codes[face], pixels)
             }));
             lists.fill(count, faces.iter().map(|face| face.pixels.rows.clone()));
@@ -215,8 +215,8 @@ impl Face {
         if !entry && !is_exit(code) || pixels.rows.is_empty() || pixels.columns.is_empty() {
             return None;
         }
-        let (cell, vertices) = facts.vertices(mesh, face);
-        let [a, b, c] = vertices.map(|v| mesh.points()[v as usize]);
+        let cell = facts.owners[face] >> 2;
+        let [a, b, c] = facts.surface(mesh).corners(face - facts.interior);
         Some(Face { cell, entry, corners: if entry { [a, c, b] } else { [a, b, c] }, pixels })
     }
 

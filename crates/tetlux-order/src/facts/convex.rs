@@ -25,7 +25,7 @@ pub(super) fn is_convex(mesh: &TetMesh, facts: &Facts) -> bool {
 
 /// Every edge of the surface joins two faces, neither of which has the other's third vertex before it.
 fn has_no_concave_edge(mesh: &TetMesh, surface: &Surface) -> bool {
-    let Surface { points, corners: faces, edges } = surface;
+    let Surface { points, corners: faces, edges, .. } = surface;
     let at = |v: u32| mesh.points()[points[v as usize] as usize];
     let normal = |face: u32| {
         let [a, b, c] = faces[face as usize].map(|v| at(v).as_dvec3());

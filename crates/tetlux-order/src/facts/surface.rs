@@ -1,5 +1,6 @@
 //! The boundary as a surface of its own: what its outline is found from.
 
+use glam::Vec3;
 use tetlux_mesh::{NONE, TetMesh};
 
 use super::Facts;
@@ -9,6 +10,8 @@ use super::Facts;
 pub(crate) struct Surface {
     /// For each vertex its point.
     pub(crate) points: Vec<u32>,
+    /// And where that is: near in memory to those of the other vertices of its faces.
+    pub(crate) positions: Vec<Vec3>,
     /// The vertices of each face of the boundary, counter-clockwise seen from outside; faces in their order.
     pub(crate) corners: Vec<[u32; 3]>,
     pub(crate) edges: Vec<Edge>,
@@ -38,7 +41,13 @@ impl Surface {
         let faces = facts.interior..facts.owners.len();
         let corners: Vec<[u32; 3]> = faces.map(|face| facts.vertices(mesh, face).1.map(&mut place)).collect();
         let edges = edges(points.len(), &corners);
-        Surface { points, corners, edges }
+        let positions = points.iter().map(|&point| mesh.points()[point as usize]).collect();
+        Surface { points, positions, corners, edges }
+    }
+
+    /// Where the vertices of a face are, counted from the boundary's first.
+    pub(crate) fn corners(&self, face: usize) -> [Vec3; 3] {
+        self.corners[face].map(|corner| self.positions[corner as usize])
     }
 }
 

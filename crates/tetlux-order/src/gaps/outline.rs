@@ -31,10 +31,10 @@ impl Outline {
     /// Finds the outline; false if some vertex is not well before the eye, which tells nothing then.
     pub(super) fn find(&mut self, mesh: &TetMesh, facts: &Facts, codes: &[u8], rays: &Rays) -> bool {
         let surface = facts.surface(mesh);
-        self.seen.resize(surface.points.len(), [0.0; 2]);
-        let seen = self.seen.par_iter_mut().zip(&surface.points).with_min_len(1024);
-        let before = seen.map(|(seen, &point)| {
-            let at = rays.project(mesh.points()[point as usize]).filter(|at| at.iter().all(|x| x.is_finite()));
+        self.seen.resize(surface.positions.len(), [0.0; 2]);
+        let seen = self.seen.par_iter_mut().zip(&surface.positions).with_min_len(1024);
+        let before = seen.map(|(seen, &position)| {
+            let at = rays.project(position).filter(|at| at.iter().all(|x| x.is_finite()));
             *seen = at.unwrap_or_default();
             at.is_some()
         });
