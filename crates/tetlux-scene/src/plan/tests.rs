@@ -93,6 +93,38 @@ fn cells_behind_the_eye_are_outside() {
 }
 
 #[test]
+fn outside_is_what_lies_beyond_one_plane_of_the_frustum() {
+    let parts = procedural::cuboid([6, 5, 4], Split::Six, [DVec3::splat(-1.0), DVec3::ONE]);
+    let field = Field::point("x", 1, parts.sample(|p| 3.0 + p.x));
+    let mesh = TetMesh::assemble(&parts.points, &parts.cells, vec![field]).unwrap();
+    let mut scene = scene(&mesh, &[GREY], Method::default());
+    let (perspective, orthographic) =
+        (Projection::Perspective { view_angle: 40.0 }, Projection::Orthographic { parallel_scale: 0.7 });
+    let (mut all, mut none) = (false, false);
+    // From far away, from nearby, from within, and along parallel rays.
+    for (distance, projection) in
+        [(9.0, perspective), (1.9, perspective), (0.4, perspective), (4.0, orthographic), (0.3, orthographic)]
+    {
+        for turn in 0..7 {
+            let (sin, cos) = (0.3 + 0.9 * f64::from(turn)).sin_cos();
+            scene.camera.position = DVec3::new(cos, sin, 0.31) * distance;
+            scene.camera.focal_point = DVec3::new(0.05, -0.12, 0.07);
+            (scene.camera.projection, scene.size) = (projection, [40, 30]);
+            let plan = Plan::new(&scene, &mesh, None).unwrap();
+            let outside = |cell: &&[u32; 4]| {
+                let corners = cell.map(|v| plan.view.to_eye(mesh.world(v)));
+                plan.view.frustum().iter().any(|&(n, c)| corners.iter().all(|&q| n.dot(q) + c < 0.0))
+            };
+            let expected = mesh.cells().iter().filter(outside).count();
+            assert_eq!(plan.skips.outside, expected, "{distance} {turn}");
+            assert_eq!(plan.cells.len() + expected, mesh.cells().len());
+            (all, none) = (all || expected > mesh.cells().len() / 2, none || expected == 0);
+        }
+    }
+    assert!(all && none, "much and nothing lies outside");
+}
+
+#[test]
 fn backends_and_orders() {
     let mesh = row(4);
     let colors = [[0.1, 0.2, 0.3], [0.3, 0.2, 0.1], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
