@@ -26,7 +26,7 @@ fn row(i: u32) {
         for (var n = 0u; n < 4u; n++) {
             outputs[20u * i + 4u * k + n] = bitcast<u32>(cell.planes[k][n]);
         }
-        outputs[20u * i + 16u + k] = bitcast<u32>(cell.gradient[k]);
+        outputs[20u * i + 16u + k] = bitcast<u32>(cell.rise[k]);
     }
 }
 ";
