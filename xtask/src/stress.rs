@@ -74,11 +74,13 @@ pub(crate) fn run(args: &Args) -> Result<bool> {
     let renderer = Renderer::new();
     let stress = Stress { renderer: &renderer, cases: &args.case, short: args.short, folder: &args.output };
     let mut sections = Vec::new();
-    for (name, part) in PARTS {
+    // The last part first: what the others give back would hold what endurance loses, and hide it.
+    for (name, part) in PARTS.iter().rev() {
         if args.only.is_empty() || args.only.iter().any(|asked| asked == name) {
             sections.push(part(&stress)?);
         }
     }
+    sections.reverse();
     let page = if args.write_docs { PathBuf::from("docs/stress.md") } else { args.output.join("stress.md") };
     let json = args.output.join("stress.json");
     let text = markdown(&Machine::new(&renderer), &sections, args.short);
