@@ -76,6 +76,17 @@ fn cell_kind(z: vec4<f32>) -> f32 {
     return PLAIN;
 }
 
+// One of a cell's vertices. Drivers keep an array that is indexed by a variable in memory, and all that is near it.
+fn vertex_at(v: array<Vertex, 4>, index: u32) -> Vertex {
+    var found = v[0];
+    for (var i = 1u; i < 4u; i++) {
+        if i == index {
+            found = v[i];
+        }
+    }
+    return found;
+}
+
 // Which of a cell's vertices is its reference: the lowest, of a DEEP one that farthest from the eye.
 fn reference_index(v: array<Vertex, 4>, kind: f32) -> u32 {
     var index = 0u;
@@ -213,7 +224,7 @@ fn leaning(v: array<Vertex, 4>, kind: f32, parity: f32) -> Leaning {
         side_of(v[0], v[1], v[2]),
     );
     let reference = reference_index(v, kind);
-    let a = v[reference];
+    let a = vertex_at(v, reference);
     let rise = select(a.eye.z * view.pixel, view.pixel, ORTHOGRAPHIC);
     // Plane 0 does not hold vertex 0: its origin is its own lowest vertex, where its depth is known.
     var origin = v[1];
@@ -230,30 +241,28 @@ fn leaning(v: array<Vertex, 4>, kind: f32, parity: f32) -> Leaning {
         face_plane(sides[2], v[0], a, rise),
         face_plane(sides[3], v[0], a, rise),
     );
-    // Of the faces at the reference vertex the one seen largest, and its other two vertices.
-    var lean = select(0u, 1u, reference == 0u);
-    for (var i = lean + 1u; i < 4u; i++) {
-        if i != reference && sides[i].reach > sides[lean].reach {
+    // Of the faces at the reference vertex the one seen largest, and the vertex opposite.
+    var lean = 0u;
+    var side = sides[0];
+    var plane = planes[0];
+    var top = v[0].position;
+    var largest = -1.0;
+    for (var i = 0u; i < 4u; i++) {
+        if i != reference && sides[i].reach > largest {
             lean = i;
+            side = sides[i];
+            plane = planes[i];
+            top = v[i].position;
+            largest = side.reach;
         }
     }
-    let others = 15u & ~(1u << reference | 1u << lean);
-    let second = firstTrailingBit(others);
-    let third = firstLeadingBit(others);
-    let b = v[second];
-    let c = v[third];
-    let side = sides[lean];
-    // From the vertex opposite the shortest way to that face: of a sheet that is across it, and nothing cancels.
-    let to_a = v[lean].position - a.position;
-    let to_b = v[lean].position - b.position;
-    let to_c = v[lean].position - c.position;
-    let lengths = vec3<f32>(dot(to_a, to_a), dot(to_b, to_b), dot(to_c, to_c));
-    var way = to_a;
-    if lengths.y < lengths.x {
-        way = to_b;
-    }
-    if lengths.z < min(lengths.x, lengths.y) {
-        way = to_c;
+    // From there the shortest way to that face: of a sheet that is across it, and nothing cancels.
+    var way = top - a.position;
+    for (var i = 0u; i < 4u; i++) {
+        let to_other = top - v[i].position;
+        if i != reference && i != lean && dot(to_other, to_other) < dot(way, way) {
+            way = to_other;
+        }
     }
     let volume = abs(dot(side.normal, way));
     var result: Leaning;
@@ -267,8 +276,8 @@ fn leaning(v: array<Vertex, 4>, kind: f32, parity: f32) -> Leaning {
             let rate = sides[i].turned.xy * (rise * inward / max(volume, 1e-30));
             result.rises[i] = limited(vec3<f32>(rate, front / max(result.heights[i], 1.0 / STEEPEST)));
         }
-        let apart = abs(planes[i].xy - planes[lean].xy);
-        let slope = abs(planes[lean].xy);
+        let apart = abs(planes[i].xy - plane.xy);
+        let slope = abs(plane.xy);
         let is_along = max(apart.x, apart.y) < ALONG * max(slope.x, slope.y);
         along |= select(0u, 1u << i, is_along && !sides[i].is_edge_on);
     }
@@ -276,6 +285,11 @@ fn leaning(v: array<Vertex, 4>, kind: f32, parity: f32) -> Leaning {
     if (along & ~(1u << lean)) == 0u || side.is_edge_on {
         return result;
     }
+    let others = 15u & ~(1u << reference | 1u << lean);
+    let second = firstTrailingBit(others);
+    let third = firstLeadingBit(others);
+    let b = vertex_at(v, second);
+    let c = vertex_at(v, third);
     // M of its three vertices by pixels.
     var rate_a = beside_edge(b, c, kind);
     var rate_b = beside_edge(c, a, kind);
@@ -364,7 +378,7 @@ struct Reference {
 fn cell_reference(v: array<Vertex, 4>, s: vec4<f32>, kind: f32) -> Reference {
     var reference: Reference;
     let index = reference_index(v, kind);
-    let r = v[index];
+    let r = vertex_at(v, index);
     reference.index = index;
     reference.origins = vec4<f32>(r.pixel, select(v[1].pixel, r.pixel, kind == DEEP));
     reference.rest = r.rest;
