@@ -65,8 +65,8 @@ pub(crate) fn run(stress: &Stress) -> Result<Section> {
          stretches exchanged, repeated or inserted, the beginning of one file before the end of another, a number in place of \
          a word, a text such as -1, 1e400 or nan in place of digits. It must be refused by an error that names the file, or \
          read: then all of it must be finite and within bounds, and a picture of it by the processor without a pixel that is \
-         not. A panic, the end of the process, more than {} s of the processor or of waiting, or more memory than {} MiB \
-         and {} times the file ({} times a picture's: it may be compressed a thousandfold) is a failure.\n\n{}\n\
+         not. A panic, the end of the process, more than {} s, or more memory than {} MiB and {} times the file \
+         ({} times a picture's: it may be compressed a thousandfold) is a failure.\n\n{}\n\
          {} cases of damage: {} clean errors, {} read and right, {} failures. Tables and kept meshes count as read only if they \
          are bit for bit what was kept. The last row is no damage: {}.\n",
         supervisor::TIME_LIMIT.as_secs(),
@@ -127,11 +127,11 @@ fn tallies(batches: &[Batch]) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// A program under a limit of its address space, where the system has a shell that sets one and none is lower already.
+/// A program under a limit of its address space, where the system has a shell that sets one.
 fn limited(program: &std::path::Path) -> Command {
     if cfg!(unix) {
         let mut command = Command::new("sh");
-        command.arg("-c").arg(format!("ulimit -v {}; exec \"$0\" \"$@\"", ADDRESS_SPACE >> 10)).arg(program);
+        command.arg("-c").arg(format!("ulimit -v {} && exec \"$0\" \"$@\"", ADDRESS_SPACE >> 10)).arg(program);
         command
     } else {
         Command::new(program)

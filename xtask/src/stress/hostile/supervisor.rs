@@ -9,12 +9,8 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
-/// What a case may take: of processor time, or of waiting with nothing done.
+/// What a case may take.
 pub(super) const TIME_LIMIT: Duration = Duration::from_secs(10);
-
-/// How often a process is looked at that says nothing. One that does nothing for so many looks in a row waits for what
-/// never comes: however busy the machine, a process that could go on would have gone on between two of them.
-const LOOK: Duration = Duration::from_millis(100);
 
 /// Cases of a format for one process.
 pub(super) struct Batch {
@@ -111,59 +107,18 @@ pub(super) fn run(batch: &Batch, command: impl Fn(&Path, usize) -> Command) -> R
     Ok(tally)
 }
 
-/// Takes what a process says until it ends, or a case takes it too long.
+/// Takes what a process says until it ends or says nothing for too long.
 fn follow(child: &mut Child, case: &mut usize, tally: &mut Tally) -> RecvTimeoutError {
     let told = lines(child);
-    let pid = child.id();
-    let mut watch = Watch::new(processor_time(pid));
     loop {
-        match told.recv_timeout(LOOK) {
+        match told.recv_timeout(TIME_LIMIT) {
             Ok(told) => {
                 *case = told.case + 1;
                 tally.tell(told);
-                watch = Watch::new(processor_time(pid));
             }
-            Err(RecvTimeoutError::Timeout) if !watch.is_over(processor_time(pid)) => {}
             Err(end) => return end,
         }
     }
-}
-
-/// What a case has taken so far, by looks at its process. What others take of the machine meanwhile is not the case's.
-struct Watch {
-    /// The process's time when the case began, and at the last look.
-    begun: Option<Duration>,
-    last: Option<Duration>,
-    /// Looks in a row at which nothing had been done since the one before.
-    idle: u32,
-}
-
-impl Watch {
-    fn new(now: Option<Duration>) -> Watch {
-        Watch { begun: now, last: now, idle: 0 }
-    }
-
-    /// Whether the case has taken too long, by its process's time at one more look; where the system does not tell
-    /// it, every look is of a process that waits.
-    fn is_over(&mut self, now: Option<Duration>) -> bool {
-        self.idle = if now > self.last { 0 } else { self.idle + 1 };
-        self.last = now;
-        let taken = now.zip(self.begun).map(|(now, begun)| now.saturating_sub(begun));
-        taken.is_some_and(|taken| taken > TIME_LIMIT) || LOOK * self.idle >= TIME_LIMIT
-    }
-}
-
-/// The processor time of a process, user and system, of all its threads, where the system tells (Linux).
-fn processor_time(process: u32) -> Option<Duration> {
-    in_stat(&std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?)
-}
-
-/// The same in the text of /proc/PID/stat: its 14th and 15th field, in hundredths of a second. The second may hold spaces,
-/// and ends with the last bracket.
-fn in_stat(text: &str) -> Option<Duration> {
-    let mut fields = text.rsplit_once(')')?.1.split_whitespace().skip(11).map(str::parse::<u64>);
-    let hundredths = fields.next()?.ok()? + fields.next()?.ok()?;
-    Some(Duration::from_millis(10 * hundredths))
 }
 
 fn lines(child: &mut Child) -> Receiver<Told> {
@@ -186,37 +141,6 @@ fn lines(child: &mut Child) -> Receiver<Told> {
 #[cfg(unix)]
 mod tests {
     use super::*;
-
-    const LIMIT: u64 = TIME_LIMIT.as_millis() as u64;
-
-    fn at(milliseconds: u64) -> Option<Duration> {
-        Some(Duration::from_millis(milliseconds))
-    }
-
-    #[test]
-    fn a_case_is_over_by_its_own_time_and_not_by_that_of_others() {
-        // Beside many others: it has one hundredth of a processor.
-        let mut slow = Watch::new(at(700));
-        assert!((1..=LIMIT).all(|look| !slow.is_over(at(700 + look))));
-        assert!(slow.is_over(at(700 + LIMIT + 1)), "an endless loop");
-        // It waits now and then, at last for ever.
-        let most = (TIME_LIMIT.as_millis() / LOOK.as_millis()) as u64;
-        let mut waiting = Watch::new(at(0));
-        assert!((0..3 * most).all(|look| !waiting.is_over(at(look / (most - 1)))));
-        assert!((0..most).all(|_| !waiting.is_over(at(9))) && waiting.is_over(at(9)));
-        // Where the system tells no process's time there is the clock's.
-        let mut unknown = Watch::new(None);
-        assert!((1..most).all(|_| !unknown.is_over(None)) && unknown.is_over(None));
-    }
-
-    #[test]
-    fn a_process_s_time_is_read_whatever_its_name() {
-        let text = "12 (a) b (c) R 1 12 12 0 -1 4194304 100 0 0 0 150 25 7 8 20 0 1 0 100 1 1";
-        assert_eq!((in_stat(text), in_stat("12 (a) R 1"), in_stat("")), (at(1750), None, None));
-        if cfg!(target_os = "linux") {
-            assert!(processor_time(std::process::id()).is_some());
-        }
-    }
 
     fn told(case: usize, memory: u64, failure: Option<&str>) -> String {
         let failure = failure.map(str::to_owned);

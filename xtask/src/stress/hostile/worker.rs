@@ -18,9 +18,6 @@ use crate::memory;
 /// Bytes that reading may take whatever the file: a lattice that no array tells of, what decompressors begin with.
 pub(super) const ALWAYS: u64 = 4 << 20;
 
-/// Times that a case is done whose memory is over its limit.
-const READINGS: usize = 3;
-
 /// The cases of `stress`, in a process of their own: `stress` itself starts it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -98,31 +95,20 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 /// Does cases one after another; each gives its verdict, and the memory that it may take.
 fn each(args: &Args, one: impl Fn(usize, &mut Meter) -> (Result<Verdict, String>, u64)) -> Result<()> {
     for case in args.from..args.to {
-        // What the case itself takes it takes again; what the system happened to make resident meanwhile it does not.
-        let mut told = once(case, &one);
-        for _ in 1..READINGS {
-            if told.memory.is_none_or(|taken| taken <= told.memory_limit) {
-                break;
-            }
-            told = once(case, &one);
-        }
+        let start = Instant::now();
+        let mut meter = Meter::default();
+        let done = panic::catch_unwind(AssertUnwindSafe(|| one(case, &mut meter)));
+        let panicked = |_| (Err(PANIC.lock().unwrap_or_else(PoisonError::into_inner).clone()), u64::MAX);
+        let (verdict, memory_limit) = done.unwrap_or_else(panicked);
+        let told = Told {
+            case,
+            accepted: matches!(verdict, Ok(Verdict::Accepted)),
+            seconds: start.elapsed().as_secs_f64(),
+            memory: meter.taken,
+            memory_limit,
+            failure: verdict.err(),
+        };
         say!("{}", serde_json::to_string(&told).context("a line of figures")?);
     }
     Ok(())
-}
-
-fn once(case: usize, one: impl Fn(usize, &mut Meter) -> (Result<Verdict, String>, u64)) -> Told {
-    let start = Instant::now();
-    let mut meter = Meter::default();
-    let done = panic::catch_unwind(AssertUnwindSafe(|| one(case, &mut meter)));
-    let panicked = |_| (Err(PANIC.lock().unwrap_or_else(PoisonError::into_inner).clone()), u64::MAX);
-    let (verdict, memory_limit) = done.unwrap_or_else(panicked);
-    Told {
-        case,
-        accepted: matches!(verdict, Ok(Verdict::Accepted)),
-        seconds: start.elapsed().as_secs_f64(),
-        memory: meter.taken,
-        memory_limit,
-        failure: verdict.err(),
-    }
 }
