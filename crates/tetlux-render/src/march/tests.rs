@@ -4,7 +4,7 @@ use tetlux_mesh::{Component, Field};
 use tetlux_scene::View;
 
 use super::*;
-use crate::cell::face_normal;
+use crate::cell::{face_normal, shortest_way};
 use crate::device_view::DeviceView;
 
 fn corner(name: u32, x: f32, y: f32) -> Corner {
@@ -56,16 +56,7 @@ fn a_ray_on_a_vertex_crosses_one_of_the_triangles_around_it() {
 
 /// The shader's `volume_of`, of positions.
 fn volume_of([a, b, c]: [Vec3; 3], apex: Vec3) -> f32 {
-    let ways = [a, b, c].map(|corner| apex - corner);
-    let lengths = ways.map(|way| way.dot(way));
-    let mut way = ways[0];
-    if lengths[1] < lengths[0] {
-        way = ways[1];
-    }
-    if lengths[2] < lengths[0].min(lengths[1]) {
-        way = ways[2];
-    }
-    face_normal(a, b, c).dot(way).abs()
+    face_normal(a, b, c).dot(shortest_way([a, b, c], apex)).abs()
 }
 
 /// The shader's, of the distances and the areas of the two places.
